@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+namespace reradiant {
+
+/// Folder that holds `spectra/` and `kernels/`: $RERADIANT_DATA, else the source tree, else
+/// the installed share folder. Throws a run-time Error that names what was tried.
+std::filesystem::path data_directory();
+
+inline std::filesystem::path spectra_directory() { return data_directory() / "spectra"; }
+inline std::filesystem::path kernels_directory() { return data_directory() / "kernels"; }
+
+/// $RERADIANT_CACHE, else $XDG_CACHE_HOME/reradiant, else ~/.cache/reradiant. Not created here.
+std::filesystem::path cache_directory();
+
+} // namespace reradiant

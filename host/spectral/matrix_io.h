@@ -1,0 +1,26 @@
+#pragma once
+
+#include "host/spectral/reradiation.h"
+
+#include <filesystem>
+
+namespace reradiant {
+
+/// Reads a re-radiation matrix by its ending: .csv (INTERFACE, "Re-radiation CSV": wide or long
+/// form, per-band or density-per-nm, either orientation), .bfc (Labsphere BFC-450; kind =
+/// measured) or .exr (bispectral, Fichet, Pacanowski and Wilkie 2021). Values are converted to
+/// per-band form with rows = emission, but otherwise raw: nothing is repaired or checked for
+/// energy here. Throws an input Error with file, line and column.
+ReradiationMatrix read_reradiation(const std::filesystem::path& file);
+
+/// Writes by ending: .csv (wide, per-band, rows-emission), .bfc or .exr. Atomic: a temporary
+/// file beside it, fsync, rename. At least 9 significant digits (17 where needed to read back
+/// the same double).
+void write_reradiation(const std::filesystem::path& file, const ReradiationMatrix& matrix);
+
+/// Reads a spectrum from .spd (two columns) or .csv (nm,value; '#' comments, optional header).
+Spectrum read_spectrum(const std::filesystem::path& file);
+void write_spectrum(const std::filesystem::path& file, const std::vector<double>& wavelengths_nm,
+                    const std::vector<double>& values);
+
+} // namespace reradiant
