@@ -18,8 +18,17 @@ struct CommonOptions {
     bool verbose = false;
 };
 
-/// What a sub-command registers: it adds its options to `app` and returns nothing; its callback
-/// returns the exit code by way of `run`.
+/// What every sub-command shares. A command's function adds itself to the program and leaves its
+/// result in `exit_code`; failures leave as Error and become exit codes in main.cpp:
+///
+///     void add_info_command(CLI::App& program, CommandContext& context) {
+///         CLI::App* command = program.add_subcommand("info", "says what a file holds");
+///         command->add_option("FILE", ...)->required();
+///         command->footer("Example: reradiant info out.exr");
+///         command->callback([...] { context.exit_code = run_info(...); });
+///     }
+///
+/// The common options are added to every sub-command by main.cpp, after that.
 struct CommandContext {
     CommonOptions common;
     int exit_code = 0;
@@ -27,12 +36,12 @@ struct CommandContext {
 };
 
 /// One function a sub-command, one file each: tools/render.cpp and so on.
-void add_render_command(CLI::App& app, CommandContext& context);
-void add_measure_command(CLI::App& app, CommandContext& context);
-void add_validate_command(CLI::App& app, CommandContext& context);
-void add_info_command(CLI::App& app, CommandContext& context);
-void add_devices_command(CLI::App& app, CommandContext& context);
-void add_convert_command(CLI::App& app, CommandContext& context);
-void add_compare_command(CLI::App& app, CommandContext& context);
+void add_render_command(CLI::App& program, CommandContext& context);
+void add_measure_command(CLI::App& program, CommandContext& context);
+void add_validate_command(CLI::App& program, CommandContext& context);
+void add_info_command(CLI::App& program, CommandContext& context);
+void add_devices_command(CLI::App& program, CommandContext& context);
+void add_convert_command(CLI::App& program, CommandContext& context);
+void add_compare_command(CLI::App& program, CommandContext& context);
 
 } // namespace reradiant
