@@ -15,9 +15,9 @@ struct SpectralImage {
     int width = 0, height = 0;
     WavelengthGrid bands;
     std::vector<float> values;
-    std::vector<float> sample_count;   ///< (height, width) or empty
-    std::vector<float> variance_y;     ///< variance of each pixel's mean Y, (height, width) or empty
-    std::vector<float> variance_bands; ///< of each pixel's and band's mean, or empty
+    std::vector<float> sample_count; ///< (height, width) or empty
+    std::vector<float> variance_y;   ///< variance of each pixel's mean Y, (height, width) or empty
+    std::vector<float> variance_bands;             ///< of each pixel's and band's mean, or empty
     std::map<std::string, std::string> attributes; ///< reradiant:* text attributes
 
     float& at(int x, int y, int band) {
@@ -26,7 +26,9 @@ struct SpectralImage {
                           static_cast<std::size_t>(bands.count) +
                       static_cast<std::size_t>(band)];
     }
-    float at(int x, int y, int band) const { return const_cast<SpectralImage*>(this)->at(x, y, band); }
+    float at(int x, int y, int band) const {
+        return const_cast<SpectralImage*>(this)->at(x, y, band);
+    }
 };
 
 /// Spectral EXR in the layout of Fichet, Pacanowski and Wilkie (JCGT 2021), see INTERFACE

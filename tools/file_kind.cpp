@@ -1,0 +1,82 @@
+#include "tools/file_kind.h"
+
+#include "host/error.h"
+#include "host/film/exr_channels.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lower_case_ending(const fs::path& file) {
+    std::string ending = file.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending;
+}
+
+std::ifstream open(const fs::path& file) {
+    std::error_code ignored;
+    std::ifstream stream(file);
+    if (!stream || !fs::is_regular_file(file, ignored))
+        throw_input_error({file.string()}, "cannot be opened",
+                          "give a file that exists and is readable");
+    return stream;
+}
+
+/// True when some line begins with the text, blanks aside.
+bool has_line(const fs::path& file, const std::string& text) {
+    std::ifstream stream = open(file);
+    for (std::string line; std::getline(stream, line);) {
+        const std::size_t first = line.find_first_not_of(" \t");
+        if (first != std::string::npos && line.compare(first, text.size(), text) == 0)
+            return true;
+    }
+    return false;
+}
+
+/// A matrix begins with the comment "# reradiation", a spectrum does not.
+bool begins_as_matrix(const fs::path& file) {
+    std::ifstream stream = open(file);
+    for (std::string line; std::getline(stream, line);) {
+        const std::size_t first = line.find_first_not_of("# \t\r");
+        if (first != std::string::npos)
+            return line.starts_with("#") && line.compare(first, 11, "reradiation") == 0;
+    }
+    return false;
+}
+
+bool is_bispectral(const fs::path& file) {
+    const std::vector<std::string> names = exr_channel_names(file);
+    return std::any_of(names.begin(), names.end(),
+                       [](const std::string& name) { return name.starts_with("T."); });
+}
+
+} // namespace
+
+FileKind file_kind(const fs::path& file) {
+    open(file);
+    const std::string ending = lower_case_ending(file);
+    if (ending == ".toml")
+        return has_line(file, "[material]") && !has_line(file, "[film]") ? FileKind::Material
+                                                                         : FileKind::Scene;
+    if (ending == ".csv")
+        return begins_as_matrix(file) ? FileKind::Matrix : FileKind::Spectrum;
+    if (ending == ".exr")
+        return is_bispectral(file) ? FileKind::Matrix : FileKind::Image;
+    if (ending == ".bfc")
+        return FileKind::Matrix;
+    if (ending == ".spd")
+        return FileKind::Spectrum;
+    throw_input_error({file.string()}, "has no ending that is known",
+                      "endings are .toml, .csv, .exr, .bfc, .spd");
+}
+
+} // namespace reradiant

@@ -1,0 +1,168 @@
+#include "host/error.h"
+#include "host/film/exr_channels.h"
+#include "host/film/spectral_image.h"
+#include "host/report/json_file.h"
+#include "host/scene/scene.h"
+#include "host/spectral/matrix_io.h"
+#include "tools/command.h"
+#include "tools/file_kind.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace reradiant {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Json describe_grid(const WavelengthGrid& grid) {
+    return {{"from_nm", grid.from_nm},
+            {"to_nm", grid.to_nm()},
+            {"step_nm", grid.step_nm},
+            {"count", grid.count}};
+}
+
+Json describe_image(const fs::path& file) {
+    const SpectralImage image = read_spectral_exr(file);
+    double sum = 0.0;
+    std::size_t non_finite = 0;
+    for (const float value : image.values)
+        std::isfinite(value) ? void(sum += value) : void(++non_finite);
+    Json result = {{"kind", "spectral image"},
+                   {"width", image.width},
+                   {"height", image.height},
+                   {"bands", describe_grid(image.bands)},
+                   {"mean_radiance", sum / static_cast<double>(image.values.size())},
+                   {"non_finite", non_finite}};
+    if (!image.sample_count.empty()) {
+        const auto [low, high] =
+            std::minmax_element(image.sample_count.begin(), image.sample_count.end());
+        result["samples"] = {{"lowest", *low}, {"highest", *high}};
+    }
+    result["variance"] = image.variance_y.empty()       ? "none"
+                         : image.variance_bands.empty() ? "of Y"
+                                                        : "of Y and of every band";
+    result["attributes"] = image.attributes;
+    return result;
+}
+
+Json describe_exr(const fs::path& file) {
+    const std::vector<std::string> channels = exr_channel_names(file);
+    const auto any = [&](const char* prefix) {
+        return std::any_of(channels.begin(), channels.end(),
+                           [&](const std::string& name) { return name.starts_with(prefix); });
+    };
+    if (any("S0."))
+        return describe_image(file);
+    return {{"kind", "image without a spectrum"}, {"channels", channels}};
+}
+
+Json describe_matrix(const fs::path& file) {
+    const ReradiationMatrix matrix = read_reradiation(file);
+    const ColumnBalance balance = column_balance(matrix);
+    const auto highest = [](const std::vector<double>& sums) {
+        return sums.empty() ? 0.0 : *std::max_element(sums.begin(), sums.end());
+    };
+    return {{"kind", "re-radiation matrix"},
+            {"claims", matrix.kind == MatrixKind::Model ? "model" : "measured"},
+            {"quantity", "per-band"},
+            {"geometry", matrix.geometry},
+            {"anti_stokes_allowed", matrix.anti_stokes_allowed},
+            {"fluorescent", matrix.is_fluorescent()},
+            {"emission", describe_grid(matrix.emission)},
+            {"excitation", describe_grid(matrix.excitation)},
+            {"largest_radiant_column_sum", highest(balance.radiant)},
+            {"largest_photon_column_sum", highest(balance.photons)}};
+}
+
+Json describe_spectrum(const fs::path& file) {
+    const Spectrum spectrum = read_spectrum(file);
+    const double from = spectrum.data_from_nm(), to = spectrum.data_to_nm();
+    return {{"kind", "spectrum"},
+            {"from_nm", from},
+            {"to_nm", to},
+            {"lowest", spectrum.minimum(from, to)},
+            {"highest", spectrum.maximum(from, to)}};
+}
+
+Json describe_material(const Material& material) {
+    return {{"kind", "material"},
+            {"name", material.name},
+            {"model", model_name(material.model)},
+            {"layers", material.stack.layers.size()},
+            {"smooth", material.stack.is_smooth()},
+            {"absorbs", material.stack.absorbs()},
+            {"fluorescent", material.substrate.is_fluorescent()}};
+}
+
+Json describe_scene(const fs::path& file) {
+    const Scene scene = load_scene(file);
+    Json materials = Json::array();
+    for (const Material& material : scene.materials)
+        materials.push_back(describe_material(material));
+    Json result = {{"kind", "scene"},
+                   {"width", scene.film.width},
+                   {"height", scene.film.height},
+                   {"lights", scene.lights.size()},
+                   {"shapes", scene.shapes.size()},
+                   {"max_depth", scene.integrator.max_depth},
+                   {"hash", scene.hash},
+                   {"materials", materials}};
+    if (scene.film.bands)
+        result["bands"] = describe_grid(*scene.film.bands);
+    return result;
+}
+
+Json describe(const fs::path& file) {
+    switch (file_kind(file)) {
+    case FileKind::Scene:
+        return describe_scene(file);
+    case FileKind::Material:
+        return describe_material(load_material(file));
+    case FileKind::Matrix:
+        return describe_matrix(file);
+    case FileKind::Spectrum:
+        return describe_spectrum(file);
+    case FileKind::Image:
+        return describe_exr(file);
+    }
+    throw_input_error({file.string()}, "is of an unknown kind");
+}
+
+/// One line a value, groups indented.
+void print(const Json& value, int indent) {
+    for (const auto& [key, entry] : value.items()) {
+        const std::string margin(static_cast<std::size_t>(indent), ' ');
+        const std::string name = value.is_array() ? "-" : key + ":";
+        if (entry.is_structured()) {
+            fmt::print("{}{}\n", margin, name);
+            print(entry, indent + 2);
+        } else {
+            fmt::print("{}{} {}\n", margin, name,
+                       entry.is_string() ? entry.get<std::string>() : entry.dump());
+        }
+    }
+}
+
+} // namespace
+
+void add_info_command(CLI::App& program, CommandContext& context) {
+    auto file = std::make_shared<fs::path>();
+    CLI::App* const command = program.add_subcommand(
+        "info", "Says what a file holds: image, re-radiation matrix, spectrum, scene, material");
+    command->add_option("FILE", *file, "EXR, CSV, BFC, SPD or TOML file")->required();
+    command->footer("Example: reradiant info out.exr");
+    command->callback([file, &context] {
+        const Json description = describe(*file);
+        write_json(context.common.json, description);
+        if (!context.common.quiet)
+            print(description, 0);
+    });
+}
+
+} // namespace reradiant
