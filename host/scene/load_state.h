@@ -1,0 +1,54 @@
+#pragma once
+
+#include "host/error.h"
+#include "host/scene/sha256.h"
+#include "host/spectral/spectrum.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+/// Larger files are refused before memory is taken for them.
+inline constexpr std::uintmax_t MAX_TEXT_BYTES = std::uintmax_t{64} << 20;
+/// Scenes are written by hand; toml++ takes some fifty times the text's size.
+inline constexpr std::uintmax_t MAX_TOML_BYTES = std::uintmax_t{16} << 20;
+inline constexpr std::uintmax_t MAX_MESH_BYTES = std::uintmax_t{4} << 30;
+
+/// Reads a whole regular file. Errors (missing, a folder, unreadable, too large) are placed at
+/// `at`: the file itself for one named on the command line, the key for one named in a file.
+std::string read_file(const std::filesystem::path& file, const SourcePosition& at,
+                      std::uintmax_t max_bytes = MAX_TEXT_BYTES);
+
+/// What one call of load_scene or load_material gathers while it reads.
+class LoadState {
+public:
+    /// The file that `name` means where it stands at `at`: relative to that file's folder, then,
+    /// for names without a path, in spectra/ and in the folders of spectra/. Input Error at `at`
+    /// when there is none.
+    std::filesystem::path resolve(const std::string& name, const SourcePosition& at) const;
+    /// The same, and reads its bytes into the digest.
+    std::filesystem::path resolve_and_digest(const std::string& name, const SourcePosition& at);
+
+    void add_to_digest(const std::string& bytes);
+    std::string digest() const { return digest_.hex(); }
+
+    /// Remembers a spectrum so that use outside its data can be warned about.
+    void track(const Spectrum& spectrum, const SourcePosition& at, const std::string& name);
+    /// One warning for each tracked spectrum whose tables do not cover [from, to].
+    void warn_outside(double from_nm, double to_nm) const;
+
+private:
+    struct Tracked {
+        double from_nm, to_nm;
+        SourcePosition position;
+        std::string name;
+    };
+    std::vector<Tracked> tracked_;
+    Sha256 digest_;
+};
+
+} // namespace reradiant

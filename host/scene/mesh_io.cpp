@@ -1,0 +1,45 @@
+#include "host/scene/mesh_io.h"
+
+#include "host/scene/load_state.h"
+#include "host/scene/table_reader.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace reradiant {
+
+MeshShape read_mesh(const std::filesystem::path& file) {
+    return parse_mesh(file, read_file(file, {file.string()}, MAX_MESH_BYTES));
+}
+
+MeshShape parse_mesh(const std::filesystem::path& file, std::string_view bytes) {
+    std::string ending = file.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (ending != ".ply" && ending != ".obj")
+        throw_input_error({file.string()},
+                          fmt::format("\"{}\" is not the ending of a mesh file", ending),
+                          "give a .ply or .obj file");
+    MeshShape mesh = ending == ".ply" ? parse_ply(file, bytes) : parse_obj(file, bytes);
+    mesh.file = file;
+    if (mesh.indices.empty())
+        throw_input_error({file.string()}, "the mesh has no faces", "give at least one face");
+    return mesh;
+}
+
+void append_fan(const std::vector<std::uint32_t>& corners, MeshShape& mesh) {
+    for (std::size_t i = 2; i < corners.size(); ++i)
+        mesh.indices.insert(mesh.indices.end(), {corners[0], corners[i - 1], corners[i]});
+}
+
+float mesh_coordinate(double value, const SourcePosition& at, const std::string& name) {
+    if (!std::isfinite(value) || std::fabs(value) > MAX_COORDINATE)
+        throw_input_error(at, fmt::format("{} is {}", name, value),
+                          fmt::format("it must be finite and at most {} in size", MAX_COORDINATE));
+    return static_cast<float>(value);
+}
+
+} // namespace reradiant

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "host/scene/scene.h"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace reradiant {
+
+/// Reads a mesh by its ending, .ply (ascii, binary little and big endian) or .obj. Faces of
+/// more than three corners become fans of triangles. Throws an input Error with line and column
+/// (ascii) or byte offset (binary) that names the vertex or face: not finite, beyond 1e18, index
+/// out of range, truncated, counts that the file cannot hold. Memory is taken in proportion to
+/// the file's size, never to a count that it claims.
+MeshShape read_mesh(const std::filesystem::path& file);
+
+/// The same from bytes that were read; `file` gives the ending and the name in messages.
+MeshShape parse_mesh(const std::filesystem::path& file, std::string_view bytes);
+MeshShape parse_ply(const std::filesystem::path& file, std::string_view bytes);
+MeshShape parse_obj(const std::filesystem::path& file, std::string_view bytes);
+
+/// Appends the fan of a face whose corners are vertex numbers.
+void append_fan(const std::vector<std::uint32_t>& corners, MeshShape& mesh);
+
+/// A coordinate as float; input Error at `at` naming it unless finite and at most 1e18 in size.
+float mesh_coordinate(double value, const SourcePosition& at, const std::string& name);
+
+} // namespace reradiant

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "host/scene/load_state.h"
+#include "host/scene/table_reader.h"
+
+#include <map>
+
+namespace reradiant {
+
+/// A [[light]] table; `index` is for messages.
+Light read_light(const toml::table& table, const std::string& file, std::size_t index,
+                 LoadState& state);
+
+/// A [[shape]] table. `materials` maps names to indices into Scene::materials.
+Shape read_shape(const toml::table& table, const std::string& file, std::size_t index,
+                 const std::map<std::string, int>& materials, LoadState& state);
+
+/// Both edges of a rectangle; fails at the edge that leaves it without an area.
+std::array<Vector3, 2> read_edges(const TableReader& reader);
+
+double vector_length(const Vector3& v);
+Vector3 vector_cross(const Vector3& a, const Vector3& b);
+
+} // namespace reradiant

@@ -1,0 +1,139 @@
+#include "host/scene/material_reader.h"
+#include "host/scene/scene_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace reradiant {
+
+namespace {
+
+constexpr int MAX_FILM_SIZE = 65536;
+constexpr int MAX_PATH_DEPTH = 10000;
+
+FilmSettings read_film(const TableReader& reader) {
+    FilmSettings film;
+    film.width = reader.integer("width", 1, MAX_FILM_SIZE);
+    film.height = reader.integer("height", 1, MAX_FILM_SIZE);
+    if (!reader.has("bands_nm"))
+        return film;
+    const TableReader bands = reader.table("bands_nm", {"from", "to", "step"});
+    const NumberRange wavelength = NumberRange::within(1.0, 1e5);
+    const double from = bands.number("from", wavelength), to = bands.number("to", wavelength);
+    const double step = bands.number("step", {.low = 0.0, .low_is_allowed = false});
+    try {
+        film.bands = grid_from_range(from, to, step);
+    } catch (const std::invalid_argument& error) {
+        reader.fail("bands_nm", error.what(),
+                    "from and to are centres, a whole number of steps apart");
+    }
+    return film;
+}
+
+Camera read_camera(const TableReader& reader) {
+    Camera camera;
+    camera.origin = reader.vector("origin");
+    camera.target = reader.vector("target");
+    camera.up = reader.vector_or("up", camera.up);
+    camera.fov_deg = reader.number_or("fov_deg", camera.fov_deg, NumberRange::between(0.0, 180.0));
+    const Vector3 view{camera.target[0] - camera.origin[0], camera.target[1] - camera.origin[1],
+                       camera.target[2] - camera.origin[2]};
+    const double distance = vector_length(view), up_length = vector_length(camera.up);
+    if (!(distance > 0.0))
+        reader.fail("target", "the camera is at its target", "move origin or target");
+    if (!(up_length > 0.0))
+        reader.fail("up", "up is zero", "give a direction");
+    // sin of the angle between the two; beneath this the picture's roll is rounding noise.
+    if (!(vector_length(vector_cross(view, camera.up)) > 1e-6 * distance * up_length))
+        reader.fail(reader.has("up") ? "up" : "target", "up is parallel to the view direction",
+                    "give an up that points elsewhere");
+    camera.lens_radius =
+        reader.number_or("lens_radius", 0.0, NumberRange::within(0.0, MAX_COORDINATE));
+    camera.focus_distance =
+        reader.number_or("focus_distance", distance,
+                         {.low = 0.0, .high = 2.0 * MAX_COORDINATE, .low_is_allowed = false});
+    return camera;
+}
+
+IntegratorSettings read_integrator(const TableReader& reader) {
+    IntegratorSettings integrator;
+    integrator.max_depth = reader.integer_or("max_depth", integrator.max_depth, 1, MAX_PATH_DEPTH);
+    integrator.min_depth = reader.integer_or("min_depth", integrator.min_depth, 0, MAX_PATH_DEPTH);
+    return integrator;
+}
+
+std::map<std::string, int> read_materials(const TableReader& root, Scene& scene, LoadState& state) {
+    std::map<std::string, int> indices;
+    for (const toml::table* table : root.tables("material")) {
+        Material material = read_material(*table, root.file(), MaterialPlace::Scene, state);
+        if (!indices.emplace(material.name, static_cast<int>(scene.materials.size())).second)
+            throw_input_error(position_of(root.file(), table->find("name")->first.source()),
+                              fmt::format("two materials are called \"{}\"", material.name),
+                              "give each its own name");
+        scene.materials.push_back(std::move(material));
+    }
+    return indices;
+}
+
+void warn_outside_bands(const Scene& scene, const LoadState& state) {
+    const bool fluorescent =
+        std::any_of(scene.materials.begin(), scene.materials.end(),
+                    [](const Material& m) { return m.substrate.is_fluorescent(); });
+    const auto range = scene.film.bands
+                           ? std::array{scene.film.bands->from_nm, scene.film.bands->to_nm()}
+                           : default_range_nm(fluorescent);
+    state.warn_outside(range[0], range[1]);
+}
+
+} // namespace
+
+Scene load_scene(const std::filesystem::path& file) {
+    LoadState state;
+    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
+    state.add_to_digest(text);
+    const toml::table table = parse_toml(file.string(), text);
+    const TableReader root(
+        table, file.string(), "a scene",
+        {"film", "camera", "integrator", "light", "shape", "material", "texture"});
+    if (root.has("texture"))
+        root.fail("texture", "this version has no textures", "give numbers or spectra");
+    Scene scene;
+    scene.file = file;
+    scene.film = read_film(root.table("film", {"width", "height", "bands_nm"}));
+    scene.camera = read_camera(root.table(
+        "camera", {"origin", "target", "up", "fov_deg", "lens_radius", "focus_distance"}));
+    if (root.has("integrator"))
+        scene.integrator = read_integrator(root.table("integrator", {"max_depth", "min_depth"}));
+    const auto lights = root.tables("light");
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        scene.lights.push_back(read_light(*lights[i], root.file(), i, state));
+    const auto materials = read_materials(root, scene, state);
+    const auto shapes = root.tables("shape");
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+        scene.shapes.push_back(read_shape(*shapes[i], root.file(), i, materials, state));
+    warn_outside_bands(scene, state);
+    scene.hash = state.digest();
+    return scene;
+}
+
+Material load_material(const std::filesystem::path& file) {
+    LoadState state;
+    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
+    const toml::table table = parse_toml(file.string(), text);
+    const TableReader root(table, file.string(), "a material file", {"material"});
+    const toml::node& node = root.required("material");
+    if (node.is_array())
+        root.fail("material", "material is an array of tables",
+                  "a material file holds one [material]; [[material]] stands in scenes");
+    Material material = read_material(root.plain_table("material"), root.file(),
+                                      MaterialPlace::MaterialFile, state);
+    const auto range = default_range_nm(material.substrate.is_fluorescent());
+    state.warn_outside(range[0], range[1]);
+    return material;
+}
+
+} // namespace reradiant

@@ -1,0 +1,181 @@
+#include "host/scene/spectrum_reader.h"
+
+#include "host/spectral/colour.h"
+#include "host/spectral/matrix_io.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace reradiant {
+
+namespace {
+
+const std::vector<std::string> FORMS{
+    "nm", "file", "rgb", "illuminant", "blackbody_kelvin", "line_nm", "gaussian_nm"};
+const NumberRange ANY_VALUE = NumberRange::within(-1e18, 1e18);
+const NumberRange SCALE = NumberRange::within(0.0, 1e18);
+const NumberRange WAVELENGTH = NumberRange::within(1.0, 1e5);
+constexpr double CHECKED_FROM_NM = 200.0, CHECKED_TO_NM = 1000.0;
+constexpr std::size_t MAX_TERMS = 1000;
+
+std::vector<std::string> keys_of_form(const std::string& form) {
+    if (form == "nm")
+        return {"nm", "value"};
+    if (form == "file" || form == "rgb")
+        return {form};
+    if (form == "line_nm")
+        return {form, "width_nm", "scale"};
+    if (form == "gaussian_nm")
+        return {form, "sigma_nm", "scale"};
+    return {form, "scale"};
+}
+
+/// The form a table is in: the one key of FORMS that it holds.
+std::string form_of(const toml::table& table, const std::string& file, const std::string& name) {
+    const SourcePosition at = position_of(file, table.source());
+    if (table.contains("texture"))
+        throw_input_error(at,
+                          fmt::format("{} is a texture, which this version does not have", name),
+                          "give a number or a spectrum");
+    std::vector<std::string> found;
+    for (const auto& form : FORMS)
+        if (table.contains(form))
+            found.push_back(form);
+    if (found.size() > 1)
+        throw_input_error(at,
+                          fmt::format("{} has both \"{}\" and \"{}\"", name, found[0], found[1]),
+                          "add spectra by a list: [ {...}, {...} ]");
+    if (found.size() == 1)
+        return found[0];
+    std::vector<std::string> known = FORMS;
+    known.insert(known.end(), {"value", "scale", "width_nm", "sigma_nm"});
+    for (const auto& [key, node] : table)
+        if (std::find(known.begin(), known.end(), key.str()) == known.end())
+            throw_input_error(position_of(file, key.source()),
+                              fmt::format("unknown key \"{}\" in {}", key.str(), name),
+                              suggestion(std::string(key.str()), FORMS));
+    throw_input_error(at, fmt::format("{} does not say what spectrum it is", name),
+                      "give one of nm and value, file, rgb, illuminant, blackbody_kelvin, line_nm, "
+                      "gaussian_nm");
+}
+
+Spectrum read_table(const TableReader& reader) {
+    const auto nm = numbers_at(reader.required("nm"), reader.file(), reader.position_of_key("nm"),
+                               "nm", 0, WAVELENGTH);
+    const auto value = numbers_at(reader.required("value"), reader.file(),
+                                  reader.position_of_key("value"), "value", 0, ANY_VALUE);
+    if (nm.empty())
+        reader.fail("nm", "nm is empty", "give at least one wavelength");
+    if (nm.size() != value.size())
+        reader.fail("value", fmt::format("value has {} numbers and nm {}", value.size(), nm.size()),
+                    "give one value for each wavelength");
+    const toml::array& nodes = *reader.required("nm").as_array();
+    for (std::size_t i = 1; i < nm.size(); ++i)
+        if (!(nm[i] > nm[i - 1]))
+            throw_input_error(position_of(reader.file(), nodes[i].source()),
+                              fmt::format("nm[{}] = {} does not follow {}", i, nm[i], nm[i - 1]),
+                              "wavelengths must ascend, each once");
+    return Spectrum::table(nm, value);
+}
+
+Spectrum read_illuminant(const TableReader& reader) {
+    const std::string name = reader.text("illuminant");
+    const double scale = reader.number_or("scale", 1.0, SCALE);
+    try {
+        return illuminant_with_luminance(name, scale);
+    } catch (const std::invalid_argument& error) {
+        reader.fail("illuminant", error.what());
+    }
+}
+
+Spectrum read_blackbody(const TableReader& reader) {
+    const double kelvin = reader.number("blackbody_kelvin", NumberRange::within(500.0, 1e6));
+    const Spectrum shape = Spectrum::blackbody(kelvin, 1.0);
+    return shape.scaled(reader.number_or("scale", 1.0, SCALE) / xyz_of(shape)[1]);
+}
+
+Spectrum read_rgb(const TableReader& reader) {
+    const auto rgb =
+        numbers_at(reader.required("rgb"), reader.file(), reader.position_of_key("rgb"), "rgb", 3,
+                   NumberRange::within(0.0, 1.0));
+    return reflectance_from_rgb({rgb[0], rgb[1], rgb[2]});
+}
+
+Spectrum read_form(const TableReader& reader, const std::string& form, LoadState& state) {
+    if (form == "nm")
+        return read_table(reader);
+    if (form == "file")
+        return read_spectrum(
+            state.resolve_and_digest(reader.text("file"), reader.position_of_key("file")));
+    if (form == "rgb")
+        return read_rgb(reader);
+    if (form == "illuminant")
+        return read_illuminant(reader);
+    if (form == "blackbody_kelvin")
+        return read_blackbody(reader);
+    const NumberRange width = NumberRange::within(1e-3, 1e4);
+    if (form == "line_nm")
+        return Spectrum::line(reader.number("line_nm", WAVELENGTH),
+                              reader.number_or("width_nm", 1.0, width),
+                              reader.number_or("scale", 1.0, SCALE));
+    return Spectrum::gaussian(reader.number("gaussian_nm", WAVELENGTH),
+                              reader.number("sigma_nm", width),
+                              reader.number_or("scale", 1.0, SCALE));
+}
+
+Spectrum read_node(const toml::node& node, const std::string& file, const SourcePosition& at,
+                   const std::string& name, LoadState& state) {
+    if (node.is_number())
+        return Spectrum::constant(number_at(node, at, name, ANY_VALUE));
+    if (const toml::table* table = node.as_table()) {
+        const std::string form = form_of(*table, file, name);
+        const TableReader reader(*table, file, fmt::format("the spectrum {}", name),
+                                 keys_of_form(form));
+        Spectrum spectrum = read_form(reader, form, state);
+        state.track(spectrum, at, name);
+        return spectrum;
+    }
+    const toml::array* terms = node.as_array();
+    if (terms == nullptr)
+        throw_input_error(at, fmt::format("{} is {}", name, toml_type_name(node)),
+                          "give a number, a table such as { illuminant = \"D65\" } or a list");
+    if (terms->empty() || terms->size() > MAX_TERMS)
+        throw_input_error(at, fmt::format("{} is a sum of {} spectra", name, terms->size()),
+                          fmt::format("give 1 to {}", MAX_TERMS));
+    Spectrum sum;
+    for (std::size_t i = 0; i < terms->size(); ++i)
+        sum += read_node((*terms)[i], file, position_of(file, (*terms)[i].source()),
+                         fmt::format("{}[{}]", name, i), state);
+    return sum;
+}
+
+void check_limits(const Spectrum& spectrum, const SourcePosition& at, const std::string& name,
+                  const SpectrumLimits& limits) {
+    const double low = spectrum.minimum(CHECKED_FROM_NM, CHECKED_TO_NM);
+    double high = spectrum.maximum(CHECKED_FROM_NM, CHECKED_TO_NM);
+    // A box narrower than the comb of maximum() can lie between its teeth.
+    for (const SpectralLine& line : spectrum.lines())
+        high = std::max(high, spectrum(line.centre_nm));
+    const double rounding = 1e-9 * std::max(1.0, limits.high < 1e17 ? limits.high : 1.0);
+    if (limits.low_is_allowed ? low < limits.low : low <= limits.low)
+        throw_input_error(at, fmt::format("{} goes down to {}", name, low),
+                          fmt::format("it must be {} {}",
+                                      limits.low_is_allowed ? "at least" : "above", limits.low));
+    if (!(high <= limits.high + rounding))
+        throw_input_error(at, fmt::format("{} goes up to {}", name, high),
+                          fmt::format("it must be at most {}", limits.high));
+}
+
+} // namespace
+
+Spectrum read_spectrum_key(const TableReader& table, const std::string& key,
+                           const SpectrumLimits& limits, LoadState& state) {
+    const SourcePosition at = table.position_of_key(key);
+    const Spectrum spectrum = read_node(table.required(key), table.file(), at, key, state);
+    check_limits(spectrum, at, key, limits);
+    return spectrum;
+}
+
+} // namespace reradiant
