@@ -37,6 +37,10 @@ struct ReradiationMatrix {
     bool is_fluorescent() const;
 };
 
+/// Emission band whose centre is the excitation band's centre (to 1e-6 of the smaller step): the
+/// row of the diagonal entry. -1 when there is none.
+int diagonal_row(const ReradiationMatrix& matrix, int excitation_band);
+
 /// One fluorophore: F(lo, li) = Q x(li) li e(lo) / integral over lo > li of e(l) l dl, zero for
 /// lo <= li (INTERFACE, RERADIATION).
 struct Fluorophore {
@@ -85,8 +89,8 @@ Eigen::MatrixXd fluorescence_on_cells(const ReradiationMatrix& matrix, const Wav
 
 /// diag + strictly lower triangle of a rank-K product: lower(o, i) = [o > i] sum_k e(o,k) x(i,k).
 struct MaskedFactors {
-    Eigen::MatrixXd emission;   ///< (bands, K), all >= 0
-    Eigen::MatrixXd excitation; ///< (bands, K), all >= 0
+    Eigen::MatrixXd emission;    ///< (bands, K), all >= 0
+    Eigen::MatrixXd excitation;  ///< (bands, K), all >= 0
     double relative_error = 0.0; ///< Frobenius norm of the rest over that of the lower triangle
     int rank() const { return static_cast<int>(emission.cols()); }
 };

@@ -18,7 +18,7 @@ struct SpectralLine {
 /// tables (constant outside their range), Gaussians, blackbodies and boxes. Boxes are kept
 /// apart, so that a renderer can place fixed wavelengths on them.
 class Spectrum {
-  public:
+public:
     Spectrum() = default; ///< zero everywhere
 
     static Spectrum constant(double value);
@@ -55,8 +55,14 @@ class Spectrum {
     /// Range that every table part covers with data: {0, inf} when there is no table part.
     double data_from_nm() const;
     double data_to_nm() const;
+    /// Last wavelength that tables, Gaussians (8 sigma) and boxes describe; 0 when there are
+    /// none of them.
+    double described_to_nm() const;
+    /// Where a quadrature over the boxless part should be split: nodes of tables and Gaussians
+    /// in steps of sigma; ascending, without repetition.
+    std::vector<double> breakpoints_nm() const;
 
-  private:
+private:
     struct Table {
         std::vector<double> wavelengths_nm, values;
     };
