@@ -22,8 +22,8 @@ bool reads(const std::filesystem::path& file, const std::string& bytes) {
 }
 
 SpectralImage small_image() {
-    SpectralImage image = patterned_image(6, 40, grid_from_range(380, 480, 50));
-    image.sample_count.assign(240, 4.0f);
+    SpectralImage image = patterned_image(3, 20, grid_from_range(380, 480, 50));
+    image.sample_count.assign(60, 4.0f);
     return image;
 }
 

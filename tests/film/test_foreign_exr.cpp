@@ -20,16 +20,16 @@ void write_foreign(const std::filesystem::path& file, const std::vector<std::str
                    Imf::PixelType type, const Imath::Box2i& window) {
     Imf::Header header(window, window);
     Imf::FrameBuffer frame;
-    const half grey_half(grey);
+    const auto pixels = static_cast<std::size_t>((window.max.x - window.min.x + 1) *
+                                                 (window.max.y - window.min.y + 1));
+    const std::vector<float> floats(pixels, grey);
+    const std::vector<half> halves(pixels, half(grey));
     for (const std::string& name : names) {
         header.channels().insert(name, Imf::Channel(type));
-        const void* const value = type == Imf::HALF ? static_cast<const void*>(&grey_half)
-                                                    : static_cast<const void*>(&grey);
-        frame.insert(name, Imf::Slice::Make(type, value, Imath::V2i(0), 1, 1, 0, 0));
+        const void* const values = type == Imf::HALF ? static_cast<const void*>(halves.data())
+                                                     : static_cast<const void*>(floats.data());
+        frame.insert(name, Imf::Slice::Make(type, values, window));
     }
-    // A stride of 0 is taken to mean "packed": every pixel would be read beyond the one value.
-    for (auto slice = frame.begin(); slice != frame.end(); ++slice)
-        slice.slice().xStride = slice.slice().yStride = 0;
     Imf::OutputFile output(file.c_str(), header);
     output.setFrameBuffer(frame);
     output.writePixels(window.max.y - window.min.y + 1);
@@ -70,7 +70,9 @@ TEST(ForeignExr, MissingBandAndMissingSpectrumAreRefused) {
 
 TEST(ForeignExr, StatisticsWithAnotherDataWindowAreRefused) {
     const TemporaryFolder folder;
-    Imf::Header headers[2] = {Imf::Header(4, 3), Imf::Header(5, 3)};
+    const Imath::Box2i wider(Imath::V2i(0), Imath::V2i(4, 2));
+    Imf::Header headers[2] = {Imf::Header(small_window, small_window),
+                              Imf::Header(small_window, wider)};
     headers[0].setName("image");
     headers[0].channels().insert("S0.400nm", Imf::Channel(Imf::FLOAT));
     headers[1].setName("statistics");
