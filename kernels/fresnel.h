@@ -2,7 +2,7 @@
 #ifndef RERADIANT_FRESNEL_H
 #define RERADIANT_FRESNEL_H
 
-#include "portable.h"
+#include "kernels/portable.h"
 
 KERNELS_BEGIN
 

@@ -3,7 +3,7 @@
 #ifndef RERADIANT_MICROFACET_H
 #define RERADIANT_MICROFACET_H
 
-#include "portable.h"
+#include "kernels/portable.h"
 
 #define MICROFACET_BLINN 0
 #define MICROFACET_BECKMANN 1

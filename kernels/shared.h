@@ -43,6 +43,115 @@ typedef struct {
 } HitRecord;
 ASSERT_SIZE(HitRecord, 64);
 
+/// Nodes of a table over cos(theta): u = sqrt(cos) in TABLE_NODES - 1 equal steps (table.h).
+#define TABLE_NODES 65
+#define MAX_LAYERS 64
+
+#define LIGHT_RECTANGLE 0
+#define LIGHT_SPHERE 1
+#define LIGHT_POINT 2
+#define LIGHT_DIRECTIONAL 3
+#define LIGHT_ENVIRONMENT 4
+
+typedef struct {
+    shared_uint type;
+    shared_uint spectrum;               ///< offset in the tables: [phase][lane]
+    shared_float selection;             ///< probability of light sampling; 0: never sampled
+    shared_float cumulative;            ///< sum of `selection` up to and with this light
+    shared_float px, py, pz;            ///< centre, position
+    shared_float radius_or_area;        ///< sphere: radius; rectangle: area
+    shared_float ux, uy, uz;            ///< rectangle: full edge u
+    shared_float vx, vy, vz;            ///< rectangle: full edge v
+    shared_float nx, ny, nz;            ///< rectangle: unit normal; directional: way of travel
+    shared_float padding;
+} LightRecord;
+ASSERT_SIZE(LightRecord, 72);
+
+typedef struct {
+    shared_float origin_x, origin_y, origin_z;
+    shared_float lens_radius;
+    shared_float right_x, right_y, right_z; ///< scaled: half width of the image plane at distance 1
+    shared_float focus_distance;
+    shared_float up_x, up_y, up_z; ///< scaled: half height at distance 1
+    shared_uint width;
+    shared_float forward_x, forward_y, forward_z;
+    shared_uint height;
+} CameraRecord;
+ASSERT_SIZE(CameraRecord, 64);
+
+/// One interface for the scalar evaluation of rough lobes.
+typedef struct {
+    shared_float eta;   ///< IOR below over IOR above (at the reference wavelength if dispersive)
+    shared_float alpha; ///< 0: smooth
+    shared_uint distribution;
+    shared_uint eta_lanes; ///< offset of eta per lane, [phase][lane]; NO_INDEX if not dispersive
+} LayerRecord;
+ASSERT_SIZE(LayerRecord, 16);
+
+/// A rough lobe of an interface below the first one, in air half-vector space.
+typedef struct {
+    shared_float alpha;
+    shared_uint distribution;
+    shared_uint layer; ///< index of its interface within the material's stack
+    shared_uint padding;
+} LobeRecord;
+ASSERT_SIZE(LobeRecord, 16);
+
+/// Offsets into the tables (in floats), NO_INDEX where a material has no such table. "grey or
+/// spectral": [node] or [phase][node][lane], as `spectral` says.
+typedef struct {
+    shared_uint spectral;     ///< 1: the stack's tables depend on wavelength
+    shared_uint transmission; ///< grey or spectral: way through the stack
+    shared_uint delta;        ///< grey or spectral: weight of the mirror direction
+    shared_uint residual;     ///< grey or spectral: residual / sqrt(pi * its average)
+    shared_uint amplitude;    ///< lobe_count of them one after the other, grey or spectral
+    shared_uint diagonal;     ///< [phase][lane]: over pi n_k^2
+    shared_uint factors;      ///< [phase][2 * RANK][lane]: emission then excitation
+    shared_uint dense;        ///< [phase][excitation lane][emission lane]
+    shared_uint choice;       ///< [node][4 + LOBES]: cumulative: delta, top, lobes..., diffuse; then albedo
+    shared_uint first_layer;  ///< into the layers
+    shared_uint layer_count;
+    shared_uint lobe_count;
+    shared_uint first_lobe;   ///< into the lobes
+    shared_uint has_top_lobe;
+    shared_uint weidlich_wilkie; ///< 1: rough factors of model A multiply the diffuse part
+    shared_uint rank;
+} MaterialRecord;
+ASSERT_SIZE(MaterialRecord, 64);
+
+/// State of a path between stages.
+typedef struct {
+    shared_uint pixel;
+    shared_uint sample;
+    shared_uint phase;
+    shared_uint vertex_count;    ///< records written for this path
+    shared_float bsdf_pdf;       ///< of the last direction; < 0: delta or camera
+    shared_float throughput;     ///< running estimate for Russian roulette
+} PathState;
+ASSERT_SIZE(PathState, 24);
+
+/// Weights of one of the two directions that a vertex gathers from. Each is a scalar times
+/// cos(theta_i) / pdf; the lanes' factors are applied in `gather`.
+typedef struct {
+    shared_float x, y, z;   ///< direction, local frame
+    shared_float diffuse;   ///< times T(o) B T(i), and the residual's product
+    shared_float top;       ///< times Fresnel (already inside unless dispersive)
+    shared_float delta;     ///< times the delta table
+} DirectionRecord;
+ASSERT_SIZE(DirectionRecord, 24);
+
+/// What happened where a path met a surface (or a light, or the environment).
+typedef struct {
+    shared_uint material;     ///< NO_INDEX: the path ended on `emitter`
+    shared_uint emitter;      ///< light whose radiance is seen here
+    shared_float emitted;     ///< its weight
+    shared_uint light;        ///< light sampled, or NO_INDEX
+    shared_float out_x, out_y, out_z; ///< direction towards the camera, local frame
+    shared_uint has_next;     ///< the path goes on
+    DirectionRecord next, towards_light;
+} VertexRecord;
+ASSERT_SIZE(VertexRecord, 80);
+
 #ifndef __OPENCL_VERSION__
 } // namespace reradiant
 #endif

@@ -1,0 +1,167 @@
+#include "host/device/device.h"
+
+#include "host/error.h"
+#include "host/paths.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+namespace reradiant {
+
+namespace {
+
+struct FoundDevice {
+    DeviceInfo info;
+    cl::Device device;
+};
+
+std::string type_name(cl_device_type type) {
+    if (type & CL_DEVICE_TYPE_GPU)
+        return "GPU";
+    if (type & CL_DEVICE_TYPE_CPU)
+        return "CPU";
+    return type & CL_DEVICE_TYPE_ACCELERATOR ? "accelerator" : "custom";
+}
+
+DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, int index) {
+    DeviceInfo info;
+    info.index = index;
+    info.name = device.getInfo<CL_DEVICE_NAME>();
+    info.platform = platform.getInfo<CL_PLATFORM_NAME>();
+    info.driver = device.getInfo<CL_DRIVER_VERSION>();
+    info.version = device.getInfo<CL_DEVICE_VERSION>();
+    info.type = type_name(device.getInfo<CL_DEVICE_TYPE>());
+    info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    info.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    info.local_memory_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+    info.max_work_group = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+    info.has_double =
+        device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
+    return info;
+}
+
+std::vector<FoundDevice> find_devices() {
+    std::vector<cl::Platform> platforms;
+    try {
+        cl::Platform::get(&platforms);
+    } catch (const cl::Error&) {
+        return {}; // the loader reports "no platform" as an error
+    }
+    std::vector<FoundDevice> found;
+    for (const cl::Platform& platform : platforms) {
+        std::vector<cl::Device> devices;
+        try {
+            platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+        } catch (const cl::Error&) {
+            continue; // a platform without devices
+        }
+        for (const cl::Device& device : devices)
+            found.push_back({describe(platform, device, static_cast<int>(found.size())), device});
+    }
+    return found;
+}
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+bool fits(const DeviceInfo& info, const std::string& wanted) {
+    int index = -1;
+    const auto [end, code] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
+    if (code == std::errc{} && end == wanted.data() + wanted.size())
+        return info.index == index;
+    return lower(info.name).find(lower(wanted)) != std::string::npos;
+}
+
+FoundDevice choose(const std::string& wanted) {
+    const std::vector<FoundDevice> found = find_devices();
+    if (found.empty())
+        throw_runtime_error("no OpenCL device was found",
+                            "install a driver, for instance the package pocl-opencl-icd");
+    std::string names;
+    for (const FoundDevice& candidate : found) {
+        if (wanted.empty() || fits(candidate.info, wanted))
+            return candidate;
+        names += fmt::format("{}{}: {}", names.empty() ? "" : ", ", candidate.info.index,
+                             candidate.info.name);
+    }
+    throw_runtime_error(fmt::format("no OpenCL device fits '{}'", wanted),
+                        "choose one of " + names);
+}
+
+} // namespace
+
+void prepare_opencl(int threads) {
+    std::error_code ignored;
+    const std::filesystem::path folder = cache_directory() / "pocl";
+    std::filesystem::create_directories(folder, ignored);
+    if (std::filesystem::is_directory(folder, ignored))
+        ::setenv("POCL_CACHE_DIR", folder.c_str(), 0);
+    if (threads > 0)
+        ::setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
+}
+
+std::vector<DeviceInfo> list_devices() {
+    std::vector<DeviceInfo> infos;
+    for (const FoundDevice& found : find_devices())
+        infos.push_back(found.info);
+    return infos;
+}
+
+Device::Device(const std::string& name_or_index) {
+    opencl_checked("opening the device", [&] {
+        FoundDevice found = choose(name_or_index);
+        info_ = found.info;
+        device_ = found.device;
+        context_ = cl::Context(device_);
+        queue_ = cl::CommandQueue(context_, device_);
+    });
+}
+
+void opencl_checked(const std::string& what, const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const cl::Error& error) {
+        throw_runtime_error(fmt::format("{} failed on the OpenCL device: {} returned {}", what,
+                                        error.what(), opencl_error_name(error.err())));
+    }
+}
+
+std::string opencl_error_name(int code) {
+    static const std::map<int, const char*> names = {
+        {-1, "CL_DEVICE_NOT_FOUND"},
+        {-2, "CL_DEVICE_NOT_AVAILABLE"},
+        {-4, "CL_MEM_OBJECT_ALLOCATION_FAILURE"},
+        {-5, "CL_OUT_OF_RESOURCES"},
+        {-6, "CL_OUT_OF_HOST_MEMORY"},
+        {-11, "CL_BUILD_PROGRAM_FAILURE"},
+        {-30, "CL_INVALID_VALUE"},
+        {-42, "CL_INVALID_BINARY"},
+        {-43, "CL_INVALID_BUILD_OPTIONS"},
+        {-44, "CL_INVALID_PROGRAM"},
+        {-45, "CL_INVALID_PROGRAM_EXECUTABLE"},
+        {-46, "CL_INVALID_KERNEL_NAME"},
+        {-48, "CL_INVALID_KERNEL"},
+        {-50, "CL_INVALID_ARG_VALUE"},
+        {-51, "CL_INVALID_ARG_SIZE"},
+        {-52, "CL_INVALID_KERNEL_ARGS"},
+        {-54, "CL_INVALID_WORK_GROUP_SIZE"},
+        {-55, "CL_INVALID_WORK_ITEM_SIZE"},
+        {-61, "CL_INVALID_BUFFER_SIZE"},
+        {-1001, "CL_PLATFORM_NOT_FOUND_KHR"},
+    };
+    const auto found = names.find(code);
+    return found == names.end() ? fmt::format("error {}", code) : found->second;
+}
+
+} // namespace reradiant

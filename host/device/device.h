@@ -1,0 +1,52 @@
+#pragma once
+
+#include <CL/opencl.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+struct DeviceInfo {
+    int index = 0; ///< position in the list, what --device takes
+    std::string name, platform, driver, version, type;
+    unsigned compute_units = 0;
+    std::uint64_t memory_bytes = 0, max_allocation_bytes = 0, local_memory_bytes = 0;
+    std::size_t max_work_group = 0;
+    bool has_double = false;
+};
+
+/// Before the first OpenCL call of the process: gives PoCL a cache folder of this program's own
+/// and as many threads as asked (0: all). Later calls change nothing.
+void prepare_opencl(int threads);
+
+/// Every OpenCL device of every platform. Empty when there is none.
+std::vector<DeviceInfo> list_devices();
+
+/// A device with one in-order queue.
+class Device {
+public:
+    /// By index or by a part of its name (case-insensitive); empty: the first. Run-time Error
+    /// that lists the devices when there is none, or none that fits.
+    explicit Device(const std::string& name_or_index);
+
+    const DeviceInfo& info() const { return info_; }
+    const cl::Device& handle() const { return device_; }
+    const cl::Context& context() const { return context_; }
+    const cl::CommandQueue& queue() const { return queue_; }
+
+private:
+    DeviceInfo info_;
+    cl::Device device_;
+    cl::Context context_;
+    cl::CommandQueue queue_;
+};
+
+/// Runs `action`; an OpenCL error becomes a run-time Error that names `what` and the code.
+void opencl_checked(const std::string& what, const std::function<void()>& action);
+/// "CL_INVALID_WORK_GROUP_SIZE" and so on; "error -123" for unknown codes.
+std::string opencl_error_name(int code);
+
+} // namespace reradiant

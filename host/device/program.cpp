@@ -1,0 +1,126 @@
+#include "host/device/program.h"
+
+#include "host/atomic_file.h"
+#include "host/error.h"
+#include "host/paths.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+
+namespace reradiant {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* build_options = "-cl-std=CL1.2 -Werror";
+constexpr std::string_view cache_magic = "reradiant-program-1\n";
+
+fs::path cache_file(const std::string& key) {
+    return cache_directory() / "programs" / (key + ".bin");
+}
+
+/// magic, digest of the rest, newline, binary
+std::string pack(const std::string& binary) {
+    return std::string(cache_magic) + text_digest(binary) + "\n" + binary;
+}
+
+/// Empty when there is no entry, or one that is damaged.
+std::string read_cached(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string content((std::istreambuf_iterator<char>(stream)), {});
+    const std::size_t head = cache_magic.size() + 17;
+    if (content.size() <= head || content.compare(0, cache_magic.size(), cache_magic) != 0)
+        return {};
+    std::string binary = content.substr(head);
+    return content.compare(cache_magic.size(), 16, text_digest(binary)) == 0 ? binary : "";
+}
+
+bool load_binary(const Device& device, const std::string& binary, cl::Program& program) {
+    try {
+        const cl::Program::Binaries binaries{
+            std::vector<unsigned char>(binary.begin(), binary.end())};
+        program = cl::Program(device.context(), {device.handle()}, binaries);
+        program.build({device.handle()}, build_options);
+        return true;
+    } catch (const cl::Error& error) {
+        spdlog::debug("cached kernel refused by the driver: {}", opencl_error_name(error.err()));
+        return false;
+    }
+}
+
+[[noreturn]] void report_failed_build(const Device& device, const cl::Program& program,
+                                      const std::string& file, const std::string& source) {
+    const fs::path dump = cache_directory() / ("failed-" + file);
+    std::string where = "the whole source is in " + dump.string();
+    try {
+        fs::create_directories(dump.parent_path());
+        write_text_atomically(dump, source);
+    } catch (const std::exception& error) {
+        where = fmt::format("its source could not be written: {}", error.what());
+    }
+    throw_runtime_error(fmt::format("kernels/{} does not build on '{}':\n{}", file,
+                                    device.info().name,
+                                    program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle())),
+                        where);
+}
+
+void keep(const cl::Program& program, const fs::path& file) {
+    try {
+        const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+        if (binaries.empty() || binaries[0].empty())
+            return;
+        fs::create_directories(file.parent_path());
+        write_text_atomically(file, pack(std::string(binaries[0].begin(), binaries[0].end())));
+    } catch (const std::exception& error) {
+        spdlog::debug("kernel not cached: {}", error.what()); // a cache is a convenience
+    }
+}
+
+cl::Program compile(const Device& device, const std::string& file, const std::string& source) {
+    cl::Program program(device.context(), source);
+    try {
+        program.build({device.handle()}, build_options);
+    } catch (const cl::Error&) {
+        report_failed_build(device, program, file, source);
+    }
+    return program;
+}
+
+} // namespace
+
+cl::Program build_program(const Device& device, const std::string& file,
+                          const KernelDefines& defines, BuildStatistics* statistics) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::string source = kernel_source(kernels_directory(), file, defines);
+    const DeviceInfo& info = device.info();
+    const std::string key =
+        text_digest(fmt::format("{}\n{}\n{}\n{}\n{}\n{}", source, build_options, info.name,
+                                info.platform, info.driver, info.version));
+    const std::string binary = read_cached(cache_file(key));
+    cl::Program program;
+    const bool cached = !binary.empty() && load_binary(device, binary, program);
+    if (!cached) {
+        program = compile(device, file, source);
+        keep(program, cache_file(key));
+    }
+    if (statistics) {
+        ++(cached ? statistics->from_cache : statistics->built);
+        statistics->source_bytes += source.size();
+        statistics->seconds +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+    return program;
+}
+
+void Kernel::launch(const Device& device, std::size_t items) const {
+    const std::size_t groups = (items + local_size_ - 1) / local_size_;
+    device.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups * local_size_),
+                                        cl::NDRange(local_size_));
+}
+
+} // namespace reradiant

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "host/device/device.h"
+#include "host/device/source.h"
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace reradiant {
+
+/// What building the programs of a scene took.
+struct BuildStatistics {
+    int built = 0, from_cache = 0;
+    double seconds = 0.0;
+    std::size_t source_bytes = 0;
+};
+
+/// Builds kernels/FILE.cl for a device, or takes it from the disk cache, whose key is the source,
+/// the defines, the device and the driver, and whose entries carry a checksum: a damaged entry is
+/// rebuilt, never loaded. A failed build throws a run-time Error with the compiler's log and
+/// leaves the whole source in the cache folder.
+cl::Program build_program(const Device& device, const std::string& file,
+                          const KernelDefines& defines, BuildStatistics* statistics = nullptr);
+
+/// A kernel with its launch size. Arguments are bound in order by one call.
+class Kernel {
+public:
+    Kernel() = default;
+    Kernel(const cl::Program& program, const char* name, std::size_t local_size)
+        : kernel_(program, name), local_size_(local_size) {}
+
+    template <typename... Arguments>
+    void bind(const Arguments&... arguments) {
+        cl_uint index = 0;
+        (kernel_.setArg(index++, arguments), ...);
+    }
+
+    /// Runs at least `items` work-items (rounded up to whole groups; kernels check the range).
+    void launch(const Device& device, std::size_t items) const;
+
+private:
+    cl::Kernel kernel_;
+    std::size_t local_size_ = 1;
+};
+
+} // namespace reradiant

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "host/film/spectral_image.h"
+#include "host/render/wavelength_plan.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace reradiant {
+
+/// How the film kernel keeps its sums: per lane where every lane belongs to one band, else (or
+/// when variance per band is wanted) per band.
+struct FilmLayout {
+    bool scatter = false;
+    bool band_variance = false;
+    int lanes = 0;                        ///< padded columns of a row
+    std::vector<std::int32_t> lane_bands; ///< [phase][padded lane]: column in scatter mode, or -1
+    std::vector<float> lane_weights;      ///< [phase][padded lane]
+    std::vector<float> y_weights;         ///< [column]
+    /// Column to film band and weight, for reading out.
+    std::vector<WavelengthPlan::Deposit> columns;
+
+    int rows() const { return band_variance ? 4 : 3; }
+    std::size_t floats_per_pixel() const { return static_cast<std::size_t>(rows() * lanes); }
+};
+constexpr std::size_t film_statistics_per_pixel = 5;
+
+FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool force_scatter);
+
+/// Sums of all samples, as read from the device.
+struct FilmSums {
+    std::vector<float> sums;       ///< [pixel][row][column], see kernels/film.cl
+    std::vector<float> statistics; ///< [pixel][5]
+    std::uint64_t refused() const;
+};
+
+/// Mean image with sample count and variance; `samples` were taken of every pixel.
+SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int width, int height,
+                           const WavelengthGrid& bands, std::uint32_t samples);
+
+/// Estimated relMSE of the mean image against the truth, as `compare` defines it: the mean of
+/// d^2 / (ref^2 + 0.01 mean(ref)^2) with d from the difference of the even and the odd samples'
+/// halves, which has the variance of the mean. Infinite below two samples.
+double estimated_relmse(const FilmSums& film, const FilmLayout& layout, const SpectralImage& image,
+                        std::uint32_t samples);
+
+} // namespace reradiant

@@ -1,0 +1,77 @@
+#include "host/render/render_features.h"
+
+#include <fmt/format.h>
+
+namespace reradiant {
+
+namespace {
+
+struct FeatureBit {
+    const char* name;
+    const char* define;
+    bool RenderFeatures::*value;
+    const char* why_off;
+};
+
+constexpr FeatureBit feature_bits[] = {
+    {"fluorescence", "FEATURE_FLUORESCENCE", &RenderFeatures::fluorescence,
+     "no substrate re-radiates"},
+    {"dense_matrix", "FEATURE_DENSE_MATRIX", &RenderFeatures::dense_matrix,
+     "every re-radiation matrix factors"},
+    {"spectral_stack", "FEATURE_SPECTRAL_STACK", &RenderFeatures::spectral_stack,
+     "no layer absorbs or disperses"},
+    {"dispersion", "FEATURE_DISPERSION", &RenderFeatures::dispersion,
+     "no rough top interface has an IOR that depends on wavelength"},
+    {"smooth", "FEATURE_SMOOTH", &RenderFeatures::smooth, "no interface is smooth"},
+    {"rough", "FEATURE_ROUGH", &RenderFeatures::rough, "no top interface is rough"},
+    {"deeper_lobes", "FEATURE_DEEPER_LOBES", &RenderFeatures::deeper_lobes,
+     "no stack has a second interface that makes a rough lobe"},
+    {"weidlich_wilkie", "FEATURE_WEIDLICH_WILKIE", &RenderFeatures::weidlich_wilkie,
+     "no rough stack uses the model weidlich-wilkie"},
+    {"area_lights", "FEATURE_AREA_LIGHTS", &RenderFeatures::area_lights,
+     "no rectangle or sphere light"},
+    {"delta_lights", "FEATURE_DELTA_LIGHTS", &RenderFeatures::delta_lights,
+     "no point or directional light"},
+    {"environment", "FEATURE_ENVIRONMENT", &RenderFeatures::environment, "no environment light"},
+    {"lens", "FEATURE_LENS", &RenderFeatures::lens, "the camera is a pinhole"},
+    {"scatter", "FEATURE_SCATTER", &RenderFeatures::scatter, "every lane belongs to one film band"},
+    {"band_variance", "FEATURE_BAND_VARIANCE", &RenderFeatures::band_variance,
+     "variance per band was not asked for"},
+};
+
+} // namespace
+
+RenderFeatures RenderFeatures::all() {
+    RenderFeatures features;
+    for (const FeatureBit& bit : feature_bits)
+        features.*bit.value = true;
+    features.lobes = 1;
+    return features;
+}
+
+KernelDefines RenderFeatures::defines() const {
+    KernelDefines defines;
+    for (const FeatureBit& bit : feature_bits)
+        defines.emplace_back(bit.define, this->*bit.value ? 1 : 0);
+    defines.emplace_back("CHUNKS", chunks);
+    defines.emplace_back("FILM_CHUNKS", film_chunks);
+    defines.emplace_back("LOBES", lobes);
+    return defines;
+}
+
+std::map<std::string, bool> RenderFeatures::listed() const {
+    std::map<std::string, bool> list;
+    for (const FeatureBit& bit : feature_bits)
+        list[bit.name] = this->*bit.value;
+    return list;
+}
+
+std::vector<std::string> RenderFeatures::left_out() const {
+    std::vector<std::string> lines;
+    for (const FeatureBit& bit : feature_bits)
+        if (!(this->*bit.value))
+            lines.push_back(fmt::format("{}: {}", bit.name, bit.why_off));
+    return lines;
+}
+
+} // namespace reradiant

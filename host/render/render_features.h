@@ -1,0 +1,28 @@
+#pragma once
+
+#include "host/device/source.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+/// What a scene needs of the kernels: one bit each in kernels/features.h, and the sizes that are
+/// compiled in. Everything else is an argument.
+struct RenderFeatures {
+    bool fluorescence = false, dense_matrix = false, spectral_stack = false, dispersion = false;
+    bool smooth = false, rough = false, deeper_lobes = false, weidlich_wilkie = false;
+    bool area_lights = false, delta_lights = false, environment = false, lens = false;
+    bool scatter = false, band_variance = false;
+    int chunks = 1, film_chunks = 1, lobes = 0;
+
+    static RenderFeatures all();
+    KernelDefines defines() const;
+    /// Name to on/off, for the statistics.
+    std::map<std::string, bool> listed() const;
+    /// A line for every bit that is off, and why.
+    std::vector<std::string> left_out() const;
+};
+
+} // namespace reradiant

@@ -1,0 +1,140 @@
+#include "host/render/renderer.h"
+
+#include "host/error.h"
+#include "host/geometry/geometry.h"
+#include "host/render/film_sums.h"
+#include "host/render/scene_tables.h"
+#include "host/render/wavefront.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <unistd.h>
+
+namespace reradiant {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Samples of one pass at most: between passes the film is read and the stop rules are checked.
+constexpr std::uint32_t most_samples_in_pass = 64;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::uint64_t machine_memory_bytes() {
+    return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+           static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE));
+}
+
+void check_memory(const Scene& scene, const WavelengthPlan& plan, const RenderOptions& options) {
+    const std::uint64_t limit =
+        options.memory_limit_bytes ? options.memory_limit_bytes : machine_memory_bytes() / 5 * 4;
+    const std::uint64_t needed = predicted_render_bytes(scene, plan, options);
+    if (needed > limit)
+        throw_input_error(
+            {scene.file.string()},
+            fmt::format("the render would take {} bytes, the limit is {}", needed, limit),
+            "make the film smaller, take fewer bands or raise --memory-limit");
+}
+
+SceneTables prepare_tables(const Scene& scene, const WavelengthPlan& plan,
+                           const RenderOptions& options) {
+    SceneTables tables = build_scene_tables(scene, plan, options.model, options.all_features);
+    const FilmLayout layout =
+        film_layout(plan, options.band_variance || options.all_features, options.all_features);
+    tables.features.scatter = layout.scatter;
+    tables.features.band_variance = layout.band_variance;
+    return tables;
+}
+
+/// Doubling passes: the first ones show and estimate early, later ones cost little to stop.
+std::uint32_t next_pass(std::uint32_t done, const RenderOptions& options) {
+    const std::uint32_t size = std::clamp<std::uint32_t>(done, 1, most_samples_in_pass);
+    return std::min(size, options.samples - done);
+}
+
+bool must_stop(const RenderProgress& state, const RenderOptions& options) {
+    return state.samples >= options.samples || state.seconds >= options.time_seconds ||
+           state.relmse <= options.relmse;
+}
+
+void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables& tables) {
+    const WavefrontStatistics& statistics = wavefront.statistics();
+    result.trace_seconds = statistics.trace_seconds;
+    result.shade_seconds = statistics.kernel_seconds;
+    result.paths = statistics.paths;
+    result.rays = statistics.rays;
+    result.build_seconds = result.build.seconds;
+    result.device_bytes = wavefront.device_bytes();
+    result.table_bytes = tables.tables.size() * sizeof(float);
+    result.features = tables.features.listed();
+    result.left_out = tables.features.left_out();
+    result.left_out.insert(result.left_out.end(), result.plan.left_out.begin(),
+                           result.plan.left_out.end());
+    result.notes = tables.notes;
+}
+
+} // namespace
+
+std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& plan,
+                                     const RenderOptions& options) {
+    const auto pixels = static_cast<std::uint64_t>(scene.film.width) *
+                        static_cast<std::uint64_t>(scene.film.height);
+    const auto lanes = static_cast<std::uint64_t>(plan.padded_lanes());
+    const std::uint64_t rows = options.band_variance ? 4 : 3;
+    const std::uint64_t film = pixels * (rows * lanes + film_statistics_per_pixel) * 4;
+    const std::uint64_t image = pixels * (static_cast<std::uint64_t>(plan.film.count) + 5) * 4;
+    const std::uint64_t depth = static_cast<std::uint64_t>(scene.integrator.max_depth) + 1;
+    const std::uint64_t paths =
+        options.batch_paths * (depth * (sizeof(VertexRecord) + sizeof(RayRecord)) + lanes * 4 +
+                               sizeof(RayRecord) + sizeof(HitRecord) + sizeof(PathState));
+    // The film is on the device and, while it is read, on the host; the image is written once.
+    return 2 * film + 2 * image + paths;
+}
+
+RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
+                    const std::function<bool(const RenderProgress&)>& progress) {
+    const Clock::time_point start = Clock::now();
+    RenderResult result;
+    result.plan =
+        plan_wavelengths(scene, options.bands.value_or(film_bands(scene)), options.wavelengths);
+    check_memory(scene, result.plan, options);
+    const SceneTables tables = prepare_tables(scene, result.plan, options);
+    const Geometry geometry(scene);
+    Wavefront wavefront(device, geometry, tables, result.plan,
+                        {static_cast<std::uint32_t>(scene.integrator.max_depth),
+                         static_cast<std::uint32_t>(scene.integrator.min_depth), options.seed,
+                         options.batch_paths, options.threads},
+                        result.build);
+    result.setup_seconds = seconds_since(start) - result.build.seconds;
+
+    const FilmLayout layout =
+        film_layout(result.plan, tables.features.band_variance, tables.features.scatter);
+    const Clock::time_point rendering = Clock::now();
+    RenderProgress state;
+    while (!must_stop(state, options)) {
+        const std::uint32_t samples = next_pass(state.samples, options);
+        wavefront.render_pass(options.first_sample + state.samples, samples);
+        state.samples += samples;
+        state.seconds = seconds_since(rendering);
+        const FilmSums film = wavefront.read_film();
+        result.image = resolve_film(film, layout, scene.film.width, scene.film.height,
+                                    result.plan.film, state.samples);
+        result.non_finite = film.refused();
+        state.relmse = estimated_relmse(film, layout, result.image, state.samples);
+        result.passes.push_back(state);
+        if (progress && !progress(state))
+            break;
+    }
+    result.samples = state.samples;
+    result.relmse = state.relmse;
+    collect(result, wavefront, tables);
+    result.total_seconds = seconds_since(start);
+    return result;
+}
+
+} // namespace reradiant

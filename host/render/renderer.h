@@ -1,0 +1,66 @@
+#pragma once
+
+#include "host/device/device.h"
+#include "host/device/program.h"
+#include "host/film/spectral_image.h"
+#include "host/render/wavelength_plan.h"
+#include "host/scene/scene.h"
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+struct RenderOptions {
+    std::uint32_t samples = 64;     ///< per pixel; stops at the first of samples, time and error
+    std::uint32_t first_sample = 0; ///< for partial renders of disjoint ranges
+    double time_seconds = std::numeric_limits<double>::infinity();
+    double relmse = 0.0; ///< stop when the estimate is at most this
+    std::uint32_t seed = 0;
+    int threads = 0;
+    Model model = Model::Auto;           ///< other than Auto: instead of every material's own
+    std::optional<WavelengthGrid> bands; ///< instead of the scene's
+    WavelengthOptions wavelengths;
+    bool band_variance = false;
+    bool all_features = false;
+    std::size_t batch_paths = 1u << 15;
+    std::uint64_t memory_limit_bytes = 0; ///< 0: 80 % of the machine's memory
+};
+
+/// The state of a render after one pass.
+struct RenderProgress {
+    std::uint32_t samples = 0;
+    double seconds = 0.0; ///< since rendering began, set-up not counted
+    double relmse = std::numeric_limits<double>::infinity();
+};
+
+struct RenderResult {
+    SpectralImage image;
+    std::vector<RenderProgress> passes;
+    double setup_seconds = 0.0, build_seconds = 0.0, trace_seconds = 0.0, shade_seconds = 0.0;
+    double total_seconds = 0.0;
+    std::uint32_t samples = 0;
+    std::uint64_t paths = 0, rays = 0, non_finite = 0;
+    double relmse = std::numeric_limits<double>::infinity();
+    BuildStatistics build;
+    WavelengthPlan plan;
+    std::map<std::string, bool> features;
+    std::vector<std::string> left_out, notes;
+    std::size_t device_bytes = 0, table_bytes = 0;
+};
+
+/// Renders a scene. `progress` is called after every pass; returning false stops the render, and
+/// the result holds what was done. Input Error when the predicted memory exceeds the limit.
+RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
+                    const std::function<bool(const RenderProgress&)>& progress = {});
+
+/// Bytes that rendering will take for film, paths and result (before anything is allocated).
+std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& plan,
+                                     const RenderOptions& options);
+
+} // namespace reradiant

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "host/render/render_features.h"
+#include "host/render/wavelength_plan.h"
+#include "kernels/shared.h"
+
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+/// Everything the kernels read about a scene's materials, lights and camera. Offsets in the
+/// records are into `tables`, in floats.
+struct SceneTables {
+    CameraRecord camera{};
+    std::vector<MaterialRecord> materials;
+    std::vector<LayerRecord> layers;
+    std::vector<LobeRecord> lobes;
+    std::vector<LightRecord> lights;
+    std::vector<float> tables;
+    std::uint32_t sampled_lights = 0; ///< lights that light sampling can choose, first in `lights`
+    std::uint32_t environment = NO_INDEX; ///< the light that the environment's spectrum is kept in
+    RenderFeatures features;
+    std::vector<std::string> notes; ///< models chosen, factorisation errors
+};
+
+/// Appends the tables of one material; sets the feature bits it needs.
+void append_material(const Material& material, Model model, const WavelengthPlan& plan, int lobes,
+                     SceneTables& tables);
+/// Most deeper rough lobes that any material's stack can have.
+int deeper_lobe_count(const Scene& scene);
+
+/// Appends all lights; sets the feature bits they need.
+void append_lights(const Scene& scene, const WavelengthPlan& plan, SceneTables& tables);
+
+CameraRecord camera_record(const Camera& camera, const FilmSettings& film);
+
+/// `model` other than Auto replaces every material's own; `keep_all` sets every feature bit.
+SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, Model model,
+                               bool keep_all);
+
+} // namespace reradiant

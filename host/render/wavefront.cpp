@@ -1,0 +1,188 @@
+#include "host/render/wavefront.h"
+
+#include "kernels/features.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace reradiant {
+
+namespace {
+
+/// Work-items of a group: few enough for any device's limit, and little private memory in all
+/// (CASES 37: PoCL lays out a whole group's private memory on one stack).
+constexpr std::size_t scalar_group = 32;
+constexpr std::size_t vector_group = 8;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::uint32_t batch_capacity(const WavefrontSettings& settings, std::uint32_t pixels) {
+    const std::size_t wanted = std::max<std::size_t>(settings.batch_paths, 1);
+    return static_cast<std::uint32_t>(
+        std::min<std::size_t>(wanted, static_cast<std::size_t>(pixels) * 1024u));
+}
+
+} // namespace
+
+Wavefront::Wavefront(const Device& device, const Geometry& geometry, const SceneTables& scene,
+                     const WavelengthPlan& plan, const WavefrontSettings& settings,
+                     BuildStatistics& build)
+    : device_(device), geometry_(geometry), scene_(scene), settings_(settings),
+      phases_(plan.phases), lanes_(plan.padded_lanes()),
+      film_layout_(film_layout(plan, scene.features.band_variance, scene.features.scatter)),
+      pixel_count_(scene.camera.width * scene.camera.height),
+      capacity_(batch_capacity(settings, pixel_count_)),
+      rounds_(settings.max_depth +
+              (scene.features.area_lights || scene.features.environment ? 1u : 0u)),
+      samples_lights_(scene.sampled_lights > 0) {
+    opencl_checked("setting up the renderer", [&] {
+        build_kernels(build);
+        materials_ = {device, std::span(scene.materials)};
+        layers_ = {device, std::span(scene.layers)};
+        lobes_ = {device, std::span(scene.lobes)};
+        lights_ = {device, std::span(scene.lights)};
+        tables_ = {device, std::span(scene.tables)};
+        const std::size_t slots = static_cast<std::size_t>(capacity_) * rounds_;
+        rays_ = {device, capacity_};
+        hits_ = {device, capacity_};
+        paths_ = {device, capacity_};
+        vertices_ = {device, slots};
+        shadow_rays_ = {device,
+                        scene.features.area_lights || scene.features.delta_lights ? slots : 0};
+        lobe_weights_ = {device, slots * 2u * static_cast<std::size_t>(scene.features.lobes)};
+        radiance_ = {device,
+                     static_cast<std::size_t>(capacity_) * static_cast<std::size_t>(lanes_)};
+        film_sums_ = {device, pixel_count_ * film_layout_.floats_per_pixel()};
+        film_statistics_ = {device, pixel_count_ * film_statistics_per_pixel};
+        film_bands_ = {device, std::span<const std::int32_t>(film_layout_.lane_bands)};
+        film_weights_ = {device, std::span<const float>(film_layout_.lane_weights)};
+        y_weights_ = {device, std::span<const float>(film_layout_.y_weights)};
+        film_sums_.fill_zero();
+        film_statistics_.fill_zero();
+        device_.queue().finish();
+    });
+}
+
+void Wavefront::build_kernels(BuildStatistics& build) {
+    RenderFeatures features = scene_.features;
+    features.scatter = film_layout_.scatter;
+    features.film_chunks = film_layout_.lanes / WIDTH;
+    const KernelDefines defines = features.defines();
+    generate_ = {build_program(device_, "generate.cl", defines, &build), "generate", scalar_group};
+    shade_ = {build_program(device_, "shade.cl", defines, &build), "shade", scalar_group};
+    gather_ = {build_program(device_, "gather.cl", defines, &build), "gather", vector_group};
+    film_ = {build_program(device_, "film.cl", defines, &build), "film", vector_group};
+}
+
+void Wavefront::render_pass(std::uint32_t first_sample, std::uint32_t samples) {
+    opencl_checked("rendering", [&] {
+        for (std::uint32_t done = 0; done < samples;) {
+            const std::uint32_t together = std::min(samples - done, capacity_);
+            const std::uint32_t pixels_at_once = capacity_ / together;
+            for (std::uint32_t first = 0; first < pixel_count_; first += pixels_at_once)
+                trace_batch({first, std::min(pixels_at_once, pixel_count_ - first),
+                             first_sample + done, together});
+            done += together;
+        }
+    });
+}
+
+void Wavefront::trace_batch(const Batch& batch) {
+    generate(batch);
+    for (std::uint32_t depth = 0; depth < rounds_ && intersect(batch, depth); ++depth) {
+        shade(batch, depth);
+        occlude(batch, depth);
+    }
+    gather(batch);
+    add_to_film(batch);
+    statistics_.paths += batch.paths();
+}
+
+void Wavefront::generate(const Batch& batch) {
+    generate_.bind(rays_.buffer(), paths_.buffer(), scene_.camera, batch.first_pixel,
+                   batch.first_sample, batch.samples, batch.paths(),
+                   static_cast<std::uint32_t>(phases_), settings_.seed);
+    generate_.launch(device_, batch.paths());
+}
+
+bool Wavefront::intersect(const Batch& batch, std::uint32_t depth) {
+    wait_for_kernels();
+    const auto start = std::chrono::steady_clock::now();
+    const auto rays = rays_.map(CL_MAP_READ, 0, batch.paths());
+    const auto hits = hits_.map(CL_MAP_WRITE, 0, batch.paths());
+    const auto active = std::count_if(rays.span().begin(), rays.span().end(),
+                                      [](const RayRecord& ray) { return ray.t_far >= 0.0f; });
+    if (active > 0)
+        geometry_.intersect(rays.span(), hits.span(), depth == 0, settings_.threads);
+    statistics_.rays += static_cast<std::uint64_t>(active);
+    statistics_.trace_seconds += seconds_since(start);
+    return active > 0;
+}
+
+void Wavefront::shade(const Batch& batch, std::uint32_t depth) {
+    shade_.bind(rays_.buffer(), hits_.buffer(), paths_.buffer(), vertices_.buffer(),
+                shadow_rays_.buffer(), lobe_weights_.buffer(), materials_.buffer(),
+                layers_.buffer(), lobes_.buffer(), lights_.buffer(), tables_.buffer(),
+                batch.paths(), capacity_, depth, settings_.max_depth, settings_.min_depth,
+                scene_.sampled_lights, scene_.environment, settings_.seed);
+    shade_.launch(device_, batch.paths());
+}
+
+void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
+    if (!samples_lights_)
+        return;
+    wait_for_kernels();
+    const auto start = std::chrono::steady_clock::now();
+    const auto rays = shadow_rays_.map(CL_MAP_READ | CL_MAP_WRITE,
+                                       static_cast<std::size_t>(depth) * capacity_, batch.paths());
+    const auto active = std::count_if(rays.span().begin(), rays.span().end(),
+                                      [](const RayRecord& ray) { return ray.t_far >= 0.0f; });
+    if (active > 0)
+        geometry_.occlude(rays.span(), settings_.threads);
+    statistics_.rays += static_cast<std::uint64_t>(active);
+    statistics_.trace_seconds += seconds_since(start);
+}
+
+void Wavefront::gather(const Batch& batch) {
+    gather_.bind(radiance_.buffer(), paths_.buffer(), vertices_.buffer(), shadow_rays_.buffer(),
+                 lobe_weights_.buffer(), materials_.buffer(), layers_.buffer(), lights_.buffer(),
+                 tables_.buffer(), batch.paths(), capacity_, static_cast<std::uint32_t>(phases_));
+    gather_.launch(device_, batch.paths());
+}
+
+void Wavefront::add_to_film(const Batch& batch) {
+    film_.bind(film_sums_.buffer(), film_statistics_.buffer(), radiance_.buffer(), paths_.buffer(),
+               film_bands_.buffer(), film_weights_.buffer(), y_weights_.buffer(), batch.first_pixel,
+               batch.first_sample, batch.samples, batch.pixels);
+    film_.launch(device_, batch.pixels);
+    wait_for_kernels();
+}
+
+void Wavefront::wait_for_kernels() {
+    const auto start = std::chrono::steady_clock::now();
+    device_.queue().finish();
+    statistics_.kernel_seconds += seconds_since(start);
+}
+
+FilmSums Wavefront::read_film() const {
+    FilmSums film;
+    opencl_checked("reading the film", [&] {
+        const auto sums = film_sums_.map(CL_MAP_READ, 0, film_sums_.size());
+        const auto statistics = film_statistics_.map(CL_MAP_READ, 0, film_statistics_.size());
+        film.sums.assign(sums.span().begin(), sums.span().end());
+        film.statistics.assign(statistics.span().begin(), statistics.span().end());
+    });
+    return film;
+}
+
+std::size_t Wavefront::device_bytes() const {
+    return materials_.bytes() + layers_.bytes() + lobes_.bytes() + lights_.bytes() +
+           tables_.bytes() + rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() + paths_.bytes() +
+           vertices_.bytes() + lobe_weights_.bytes() + radiance_.bytes() + film_sums_.bytes() +
+           film_statistics_.bytes() + film_bands_.bytes() + film_weights_.bytes() +
+           y_weights_.bytes();
+}
+
+} // namespace reradiant

@@ -1,0 +1,85 @@
+#pragma once
+
+#include "host/device/buffer.h"
+#include "host/device/device.h"
+#include "host/device/program.h"
+#include "host/geometry/geometry.h"
+#include "host/render/film_sums.h"
+#include "host/render/scene_tables.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace reradiant {
+
+/// Where the time went, in seconds, and how much work it was.
+struct WavefrontStatistics {
+    double trace_seconds = 0.0;  ///< Embree, intersections and occlusions
+    double kernel_seconds = 0.0; ///< generate, shade, gather, film
+    std::uint64_t paths = 0;
+    std::uint64_t rays = 0; ///< camera, path and shadow rays that were traced
+};
+
+struct WavefrontSettings {
+    std::uint32_t max_depth = 8, min_depth = 3;
+    std::uint32_t seed = 0;
+    std::size_t batch_paths = 1u << 15;
+    int threads = 0;
+};
+
+/// The wavefront path tracer: stages on the device, rays on the host (DESIGN 3).
+class Wavefront {
+public:
+    Wavefront(const Device& device, const Geometry& geometry, const SceneTables& scene,
+              const WavelengthPlan& plan, const WavefrontSettings& settings,
+              BuildStatistics& build);
+
+    /// Adds samples [first_sample, first_sample + samples) of every pixel to the film.
+    void render_pass(std::uint32_t first_sample, std::uint32_t samples);
+
+    FilmSums read_film() const;
+    const WavefrontStatistics& statistics() const { return statistics_; }
+    std::size_t device_bytes() const;
+
+private:
+    struct Batch {
+        std::uint32_t first_pixel, pixels, first_sample, samples;
+        std::uint32_t paths() const { return pixels * samples; }
+    };
+
+    void build_kernels(BuildStatistics& build);
+    void trace_batch(const Batch& batch);
+    void generate(const Batch& batch);
+    bool intersect(const Batch& batch, std::uint32_t depth);
+    void shade(const Batch& batch, std::uint32_t depth);
+    void occlude(const Batch& batch, std::uint32_t depth);
+    void gather(const Batch& batch);
+    void add_to_film(const Batch& batch);
+    void wait_for_kernels();
+
+    const Device& device_;
+    const Geometry& geometry_;
+    const SceneTables& scene_;
+    WavefrontSettings settings_;
+    int phases_, lanes_;
+    FilmLayout film_layout_;
+    std::uint32_t pixel_count_, capacity_, rounds_;
+    bool samples_lights_;
+    WavefrontStatistics statistics_;
+
+    Kernel generate_, shade_, gather_, film_;
+    DeviceArray<MaterialRecord> materials_;
+    DeviceArray<LayerRecord> layers_;
+    DeviceArray<LobeRecord> lobes_;
+    DeviceArray<LightRecord> lights_;
+    DeviceArray<float> tables_;
+    DeviceArray<RayRecord> rays_, shadow_rays_;
+    DeviceArray<HitRecord> hits_;
+    DeviceArray<PathState> paths_;
+    DeviceArray<VertexRecord> vertices_;
+    DeviceArray<float> lobe_weights_, radiance_, film_sums_, film_statistics_;
+    DeviceArray<std::int32_t> film_bands_;
+    DeviceArray<float> film_weights_, y_weights_;
+};
+
+} // namespace reradiant

@@ -1,0 +1,195 @@
+#include "host/render/wavelength_plan.h"
+
+#include "kernels/features.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace reradiant {
+
+namespace {
+
+constexpr double widest_phase_nm = 1.25;
+constexpr int most_phases = 16;
+/// Lines up to this many comb steps wide get lanes of their own.
+constexpr double widest_line_in_steps = 2.0;
+constexpr std::size_t most_line_lanes = 32;
+
+double step_tolerance(double step_nm) {
+    return 1e-6 * step_nm;
+}
+
+/// Which cells can carry light at all: those a lamp emits in, and those that something excited
+/// there can re-radiate to.
+std::vector<bool> active_cells(const Scene& scene, const WavelengthGrid& cells) {
+    const auto count = static_cast<std::size_t>(cells.count);
+    std::vector<bool> active(count, false);
+    for (int c = 0; c < cells.count; ++c)
+        for (const Light& light : scene.lights)
+            if (!light_spectrum(light).is_zero_within(cells.lower_edge_nm(c),
+                                                      cells.upper_edge_nm(c)))
+                active[static_cast<std::size_t>(c)] = true;
+    for (const Material& material : scene.materials) {
+        if (!material.substrate.is_fluorescent())
+            continue;
+        const Eigen::MatrixXd matrix = material.substrate.fluorescence_on(cells);
+        for (int i = 0; i < cells.count; ++i)
+            for (int o = 0; active[static_cast<std::size_t>(i)] && o < cells.count; ++o)
+                if (matrix(o, i) > 0.0)
+                    active[static_cast<std::size_t>(o)] = true;
+    }
+    return active;
+}
+
+/// The film's cells, with whole steps added below as far as something can be excited.
+WavelengthGrid cells_with_excitation(const Scene& scene, const WavelengthGrid& film) {
+    double lowest = film.lower_edge_nm(0);
+    for (const Material& material : scene.materials)
+        if (material.substrate.is_fluorescent())
+            lowest = std::min(lowest, material.substrate.excitation_range_nm()[0]);
+    const double gap = film.lower_edge_nm(0) - lowest;
+    const int added = std::max(
+        0, static_cast<int>(std::ceil((gap - step_tolerance(film.step_nm)) / film.step_nm)));
+    return {film.from_nm - added * film.step_nm, film.step_nm, film.count + added};
+}
+
+/// Cells above the film can only matter by anti-Stokes emission; cells below it only by exciting.
+WavelengthGrid trimmed(const Scene& scene, const WavelengthGrid& cells,
+                       std::vector<std::string>& left_out) {
+    const std::vector<bool> active = active_cells(scene, cells);
+    int first = 0, last = cells.count - 1;
+    while (first < last && !active[static_cast<std::size_t>(first)])
+        ++first;
+    while (last > first && !active[static_cast<std::size_t>(last)])
+        --last;
+    if (first > 0)
+        left_out.push_back(fmt::format(
+            "{} band(s) from {:g} to {:g} nm: no light emits there and nothing re-radiates there",
+            first, cells.centre_nm(0), cells.centre_nm(first - 1)));
+    if (last < cells.count - 1)
+        left_out.push_back(fmt::format(
+            "{} band(s) from {:g} to {:g} nm: no light emits there and nothing re-radiates there",
+            cells.count - 1 - last, cells.centre_nm(last + 1), cells.to_nm()));
+    return {cells.centre_nm(first), cells.step_nm, last - first + 1};
+}
+
+/// `count` equal cells over the same range.
+WavelengthGrid recut(const WavelengthGrid& cells, int count) {
+    const double from = cells.lower_edge_nm(0);
+    const double step = (cells.upper_edge_nm(cells.count - 1) - from) / count;
+    return {from + 0.5 * step, step, count};
+}
+
+int phases_for(double step_nm) {
+    int phases = 1;
+    while (phases < most_phases && step_nm / phases > widest_phase_nm * (1.0 + 1e-9))
+        phases *= 2;
+    return phases;
+}
+
+/// Lines of all lamps, cut at cell edges, each piece once.
+std::vector<Lane> line_lanes(const Scene& scene, const WavelengthGrid& comb) {
+    std::vector<Lane> lanes;
+    for (const Light& light : scene.lights)
+        for (const SpectralLine& line : light_spectrum(light).lines()) {
+            if (line.width_nm > widest_line_in_steps * comb.step_nm)
+                continue;
+            for (int c = 0; c < comb.count; ++c) {
+                const double from =
+                    std::max(comb.lower_edge_nm(c), line.centre_nm - 0.5 * line.width_nm);
+                const double to =
+                    std::min(comb.upper_edge_nm(c), line.centre_nm + 0.5 * line.width_nm);
+                if (to - from <= 1e-9 * line.width_nm)
+                    continue;
+                const Lane lane{c, true, 0.5 * (from + to), to - from};
+                const bool known = std::any_of(lanes.begin(), lanes.end(), [&](const Lane& l) {
+                    return l.line_nm == lane.line_nm && l.line_width_nm == lane.line_width_nm;
+                });
+                if (!known)
+                    lanes.push_back(lane);
+            }
+        }
+    if (lanes.size() > most_line_lanes)
+        lanes.clear(); // too many to stand apart: they stay on the comb, by sub-cell means
+    std::sort(lanes.begin(), lanes.end(),
+              [](const Lane& a, const Lane& b) { return a.line_nm < b.line_nm; });
+    return lanes;
+}
+
+} // namespace
+
+int WavelengthPlan::padded_lanes() const {
+    return (static_cast<int>(lanes.size()) + WIDTH - 1) / WIDTH * WIDTH;
+}
+
+std::array<double, 2> WavelengthPlan::interval_nm(int lane, int phase) const {
+    const Lane& l = lanes[static_cast<std::size_t>(lane)];
+    if (l.is_line)
+        return {l.line_nm - 0.5 * l.line_width_nm, l.line_nm + 0.5 * l.line_width_nm};
+    const double width = comb.step_nm / phases;
+    const double from = comb.lower_edge_nm(l.cell) + phase * width;
+    return {from, from + width};
+}
+
+double WavelengthPlan::wavelength_nm(int lane, int phase) const {
+    const Lane& l = lanes[static_cast<std::size_t>(lane)];
+    if (l.is_line)
+        return l.line_nm;
+    return comb.lower_edge_nm(l.cell) + (phase + 0.5) * comb.step_nm / phases;
+}
+
+WavelengthPlan::Deposit WavelengthPlan::deposit(int lane, int phase) const {
+    const bool is_line = lanes[static_cast<std::size_t>(lane)].is_line;
+    const int band = film.band_of(wavelength_nm(lane, phase));
+    return {band, (is_line ? 1.0 : comb.step_nm) / film.step_nm};
+}
+
+bool WavelengthPlan::stands_apart(const SpectralLine& line) const {
+    return std::any_of(lanes.begin(), lanes.end(), [&](const Lane& lane) {
+        return lane.is_line && lane.line_width_nm <= line.width_nm * (1.0 + 1e-9) &&
+               std::abs(lane.line_nm - line.centre_nm) < 0.5 * line.width_nm &&
+               line.width_nm <= widest_line_in_steps * comb.step_nm;
+    });
+}
+
+bool WavelengthPlan::deposits_are_fixed() const {
+    for (int lane = 0; lane < static_cast<int>(lanes.size()); ++lane)
+        for (int phase = 1; phase < phases; ++phase)
+            if (deposit(lane, phase).band != deposit(lane, 0).band)
+                return false;
+    return true;
+}
+
+WavelengthGrid film_bands(const Scene& scene) {
+    if (scene.film.bands)
+        return *scene.film.bands;
+    const bool fluoresces =
+        std::any_of(scene.materials.begin(), scene.materials.end(),
+                    [](const Material& m) { return m.substrate.is_fluorescent(); });
+    return fluoresces ? WavelengthGrid{300.0, 10.0, 49} : WavelengthGrid{380.0, 10.0, 41};
+}
+
+WavelengthPlan plan_wavelengths(const Scene& scene, const WavelengthGrid& film,
+                                const WavelengthOptions& options) {
+    WavelengthPlan plan;
+    plan.film = film;
+    plan.comb = cells_with_excitation(scene, film);
+    if (!options.keep_all)
+        plan.comb = trimmed(scene, plan.comb, plan.left_out);
+    if (options.comb_count > 0)
+        plan.comb = recut(plan.comb, options.comb_count);
+    plan.phases = options.centred ? 1 : phases_for(plan.comb.step_nm);
+    const std::vector<Lane> lines = line_lanes(scene, plan.comb);
+    auto line = lines.begin();
+    for (int c = 0; c < plan.comb.count; ++c) {
+        plan.lanes.push_back({c});
+        for (; line != lines.end() && line->cell == c; ++line)
+            plan.lanes.push_back(*line);
+    }
+    return plan;
+}
+
+} // namespace reradiant

@@ -1,0 +1,89 @@
+// Stage 6: adds a batch's paths to their pixels, one work-item a pixel, samples in order, so that
+// the sums do not depend on how samples were batched. Sums are compensated (Kahan 1965): a plain
+// float sum stops growing at 2^24 samples.
+#include "kernels/features.h"
+#include "kernels/portable.h"
+#include "kernels/shared.h"
+
+#define FILM_ROWS (3 + FEATURE_BAND_VARIANCE)
+
+/// Bits of lanes that are NaN or infinite: comparisons and fmax hide them on some compilers.
+int16 film_not_finite(float16 v) {
+    return (as_int16(v) & (int16)(0x7f800000)) == (int16)(0x7f800000);
+}
+
+/// A path's radiance in film lanes; returns 0 when some lane is not finite.
+int film_read(__global const float* path, __global const int* bands,
+              __global const float* weights, float16* value) {
+    int16 bad = (int16)(0);
+#if FEATURE_SCATTER
+    for (uint c = 0u; c < FILM_CHUNKS; ++c)
+        value[c] = (float16)(0.0f);
+    for (uint lane = 0u; lane < LANES; ++lane)
+        if (bands[lane] >= 0)
+            ((float*)value)[bands[lane]] += path[lane] * weights[lane];
+    for (uint c = 0u; c < CHUNKS; ++c)
+        bad |= film_not_finite(vload16(c, path));
+#else
+    for (uint c = 0u; c < CHUNKS; ++c) {
+        value[c] = vload16(c, path);
+        bad |= film_not_finite(value[c]);
+    }
+#endif
+    return !any(bad);
+}
+
+float film_luminance(const float16* value, __global const float* y_weights) {
+    float16 y16 = (float16)(0.0f);
+    for (uint c = 0u; c < FILM_CHUNKS; ++c)
+        y16 += value[c] * vload16(c, y_weights);
+    const float8 y8 = y16.lo + y16.hi;
+    const float4 y4 = y8.lo + y8.hi;
+    return (y4.x + y4.y) + (y4.z + y4.w);
+}
+
+/// sums: [pixel][FILM_ROWS][FILM_LANES]: sum, its compensation, alternating sum (even minus odd
+/// samples), sum of squares. statistics: [pixel][5]: sums of Y and of Y^2, their compensations,
+/// samples refused. bands and weights: [phase][LANES], where a lane goes and with what weight.
+__kernel void film(__global float* sums, __global float* statistics,
+                   __global const float* radiance, __global const PathState* paths,
+                   __global const int* bands, __global const float* weights,
+                   __global const float* y_weights, uint first_pixel, uint first_sample,
+                   uint samples, uint pixel_count) {
+    const uint pixel = (uint)get_global_id(0);
+    if (pixel >= pixel_count)
+        return;
+    __global float* base = sums + (size_t)(first_pixel + pixel) * (FILM_ROWS * FILM_LANES);
+    statistics += (size_t)(first_pixel + pixel) * 5u;
+    float2 y_sum = vload2(0, statistics), y_compensation = vload2(1, statistics);
+    for (uint s = 0u; s < samples; ++s) {
+        const size_t path = (size_t)pixel * samples + s;
+        const uint offset = paths[path].phase * LANES;
+        float16 value[FILM_CHUNKS];
+        if (!film_read(radiance + path * LANES, bands + offset, weights + offset, value)) {
+            statistics[4] += 1.0f;
+            continue;
+        }
+        const float sign = ((first_sample + s) & 1u) ? -1.0f : 1.0f;
+        for (uint c = 0u; c < FILM_CHUNKS; ++c) {
+            const float16 sum = vload16(c, base);
+            const float16 corrected = value[c] - vload16(c, base + FILM_LANES);
+            const float16 next = sum + corrected;
+            vstore16((next - sum) - corrected, c, base + FILM_LANES);
+            vstore16(next, c, base);
+            vstore16(vload16(c, base + 2 * FILM_LANES) + sign * value[c], c,
+                     base + 2 * FILM_LANES);
+#if FEATURE_BAND_VARIANCE
+            vstore16(vload16(c, base + 3 * FILM_LANES) + value[c] * value[c], c,
+                     base + 3 * FILM_LANES);
+#endif
+        }
+        const float y = film_luminance(value, y_weights);
+        const float2 corrected = (float2)(y, y * y) - y_compensation;
+        const float2 next = y_sum + corrected;
+        y_compensation = (next - y_sum) - corrected;
+        y_sum = next;
+    }
+    vstore2(y_sum, 0, statistics);
+    vstore2(y_compensation, 1, statistics);
+}

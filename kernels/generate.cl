@@ -1,0 +1,39 @@
+// Stage 1: camera rays. One work-item a path; path = local pixel * samples + local sample.
+#include "kernels/camera.h"
+#include "kernels/features.h"
+#include "kernels/portable.h"
+#include "kernels/random.h"
+#include "kernels/shared.h"
+#include "kernels/wavelength.h"
+
+__kernel void generate(__global RayRecord* rays, __global PathState* paths, CameraRecord camera,
+                       uint first_pixel, uint first_sample, uint samples, uint path_count,
+                       uint phases, uint seed) {
+    const uint path = (uint)get_global_id(0);
+    if (path >= path_count)
+        return;
+    const uint pixel = first_pixel + path / samples;
+    const uint sample = first_sample + path % samples;
+    const Random4 u = random_4(pixel, sample, 0u, seed);
+    const CameraRay camera_space = camera_ray(camera, (real)(pixel % camera.width) + u.a,
+                                              (real)(pixel / camera.width) + u.b, u.c, u.d);
+    RayRecord ray;
+    ray.origin_x = camera_space.origin.x;
+    ray.origin_y = camera_space.origin.y;
+    ray.origin_z = camera_space.origin.z;
+    ray.t_near = 0.0f;
+    ray.direction_x = camera_space.direction.x;
+    ray.direction_y = camera_space.direction.y;
+    ray.direction_z = camera_space.direction.z;
+    ray.t_far = INFINITY;
+    rays[path] = ray;
+
+    PathState state;
+    state.pixel = pixel;
+    state.sample = sample;
+    state.phase = wavelength_phase(pixel, sample, phases, seed);
+    state.vertex_count = 0u;
+    state.bsdf_pdf = -1.0f;
+    state.throughput = 1.0f;
+    paths[path] = state;
+}

@@ -1,0 +1,199 @@
+// Scalar side of a layered material: which component to sample, with what pdf, and the scalar
+// weights of its components. What depends on wavelength is applied in `gather` from tables.
+//
+// Components: mirror delta, rough top lobe, deeper rough lobes, and a cosine lobe that serves the
+// diffuse part and the residual of the specular part (host/layers/adding.h).
+#ifndef RERADIANT_LAYER_STACK_H
+#define RERADIANT_LAYER_STACK_H
+
+#include "kernels/features.h"
+#include "kernels/fresnel.h"
+#include "kernels/microfacet.h"
+#include "kernels/portable.h"
+#include "kernels/sampling.h"
+#include "kernels/shared.h"
+
+#ifdef __OPENCL_VERSION__
+#define GLOBAL_CONST __global const
+#else
+#define GLOBAL_CONST const
+#endif
+
+KERNELS_BEGIN
+
+#define CHOICES (3 + LOBES)
+#define CHOICE_DELTA 0
+#define CHOICE_TOP 1
+#define CHOICE_LOBE 2
+#define CHOICE_DIFFUSE (2 + LOBES)
+
+/// Cumulative probabilities of the components at one angle, and the albedo there (mean over
+/// lanes), which Russian roulette uses.
+typedef struct {
+    real cumulative[CHOICES];
+    real albedo;
+} LayerChoice;
+
+/// What shading needs of a material.
+typedef struct {
+    MaterialRecord record;
+    GLOBAL_CONST LayerRecord* layers;
+    GLOBAL_CONST LobeRecord* lobes;
+    GLOBAL_CONST shared_float* choice;
+} LayerStackView;
+
+DEVICE_FUNCTION LayerChoice layer_stack_choice(LayerStackView stack, real cos_o) {
+    const real position = sqrt(fmin(fmax(cos_o, REAL(0.0)), REAL(1.0))) * (real)(TABLE_NODES - 1);
+    uint node = (uint)position;
+    node = node > TABLE_NODES - 2u ? TABLE_NODES - 2u : node;
+    const real t = position - (real)node;
+    GLOBAL_CONST shared_float* row = stack.choice + node * (CHOICES + 1u);
+    LayerChoice choice;
+    for (uint i = 0u; i < CHOICES; ++i)
+        choice.cumulative[i] = row[i] + t * (row[i + CHOICES + 1u] - row[i]);
+    choice.albedo = row[CHOICES] + t * (row[2u * CHOICES + 1u] - row[CHOICES]);
+    return choice;
+}
+
+DEVICE_FUNCTION real layer_stack_probability(const LayerChoice* choice, uint component) {
+    return component == 0u ? choice->cumulative[0]
+                           : choice->cumulative[component] - choice->cumulative[component - 1u];
+}
+
+DEVICE_FUNCTION real layer_stack_lobe_pdf(int distribution, real alpha, Vec3 wo, Vec3 wi) {
+    const Vec3 h = vec3_normalise(vec3_add(wo, wi));
+    return microfacet_pdf(distribution, alpha, wo, h) /
+           fmax(REAL(4.0) * vec3_dot(wo, h), REAL(1e-20));
+}
+
+/// Pdf per solid angle with which `layer_stack_sample` picks wi by one of the components that are
+/// not deltas. Both directions above the surface.
+DEVICE_FUNCTION real layer_stack_pdf(LayerStackView stack, const LayerChoice* choice, Vec3 wo,
+                                     Vec3 wi) {
+    real pdf = layer_stack_probability(choice, CHOICE_DIFFUSE) * wi.z * INV_PI_REAL;
+#if FEATURE_ROUGH
+    if (stack.record.has_top_lobe) {
+        const LayerRecord top = stack.layers[0];
+        pdf += layer_stack_probability(choice, CHOICE_TOP) *
+               layer_stack_lobe_pdf((int)top.distribution, top.alpha, wo, wi);
+    }
+#endif
+#if FEATURE_DEEPER_LOBES
+    for (uint l = 0u; l < stack.record.lobe_count; ++l)
+        pdf += layer_stack_probability(choice, CHOICE_LOBE + l) *
+               layer_stack_lobe_pdf((int)stack.lobes[l].distribution, stack.lobes[l].alpha, wo, wi);
+#endif
+    return pdf;
+}
+
+#if FEATURE_ROUGH || FEATURE_DEEPER_LOBES
+DEVICE_FUNCTION Vec3 layer_stack_sample_lobe(int distribution, real alpha, Vec3 wo, real u1,
+                                             real u2) {
+    const Vec3 h = microfacet_sample(distribution, alpha, wo, u1, u2);
+    return vec3_sub(vec3_scale(h, REAL(2.0) * vec3_dot(wo, h)), wo);
+}
+#endif
+
+/// Direction of one component, chosen by u0; *is_delta says whether it is the mirror. The result
+/// may lie below the surface (z <= 0): then the path ends.
+DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice* choice, Vec3 wo,
+                                        real u0, real u1, real u2, int* is_delta) {
+    *is_delta = 0;
+#if FEATURE_SMOOTH
+    if (u0 < choice->cumulative[CHOICE_DELTA]) {
+        *is_delta = 1;
+        return vec3(-wo.x, -wo.y, wo.z);
+    }
+#endif
+#if FEATURE_ROUGH
+    if (u0 < choice->cumulative[CHOICE_TOP])
+        return layer_stack_sample_lobe((int)stack.layers[0].distribution, stack.layers[0].alpha,
+                                       wo, u1, u2);
+#endif
+#if FEATURE_DEEPER_LOBES
+    for (uint l = 0u; l < stack.record.lobe_count; ++l)
+        if (u0 < choice->cumulative[CHOICE_LOBE + l])
+            return layer_stack_sample_lobe((int)stack.lobes[l].distribution, stack.lobes[l].alpha,
+                                           wo, u1, u2);
+#endif
+    return sampling_cosine(u1, u2);
+}
+
+#if FEATURE_WEIDLICH_WILKIE
+/// One interface of model A between two directions just above it (DESIGN A; Weidlich and Wilkie
+/// 2007, eq. 3-5): T12 t, and both directions refracted into the medium below at the macroscopic
+/// normal. Returns 0 when one of them is totally reflected.
+DEVICE_FUNCTION real layer_stack_cross(LayerRecord layer, real eta, Vec3* wi, Vec3* wo) {
+    real t12, t;
+    if (layer.alpha > 0.0f) {
+        const Vec3 h = vec3_normalise(vec3_add(*wi, *wo));
+        t12 = REAL(1.0) - fresnel_dielectric(fmax(vec3_dot(*wi, h), REAL(0.0)), eta);
+        const real g = microfacet_g2((int)layer.distribution, layer.alpha, *wi, *wo, h);
+        t = (REAL(1.0) - g) + t12 * g;
+    } else {
+        t12 = REAL(1.0) - fresnel_dielectric(wi->z, eta);
+        t = REAL(1.0) - fresnel_dielectric(wo->z, eta);
+    }
+    const real cos_i = fresnel_cos_transmitted(wi->z, eta);
+    const real cos_o = fresnel_cos_transmitted(wo->z, eta);
+    if (!(cos_i > REAL(0.0)) || !(cos_o > REAL(0.0)))
+        return REAL(0.0);
+    *wi = vec3(wi->x / eta, wi->y / eta, cos_i);
+    *wo = vec3(wo->x / eta, wo->y / eta, cos_o);
+    return t12 * t;
+}
+
+/// Product of T12 t over the first `count` interfaces of a stack; directions as above.
+DEVICE_FUNCTION real layer_stack_descend(GLOBAL_CONST LayerRecord* layers, uint count, Vec3* wi,
+                                         Vec3* wo) {
+    real product = REAL(1.0);
+    for (uint k = 0u; k < count && product > REAL(0.0); ++k)
+        product *= layer_stack_cross(layers[k], layers[k].eta, wi, wo);
+    return product;
+}
+#endif
+
+/// Scalar value of a deeper lobe, to be multiplied by its two amplitudes. 1/sr, no cosine.
+#if FEATURE_DEEPER_LOBES
+DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi, Vec3 wo) {
+#if FEATURE_WEIDLICH_WILKIE
+    if (stack.record.weidlich_wilkie) {
+        const LayerRecord layer = stack.layers[stack.lobes[lobe].layer];
+        const real above =
+            layer_stack_descend(stack.layers, stack.lobes[lobe].layer, &wi, &wo);
+        if (!(above > REAL(0.0)))
+            return REAL(0.0);
+        const Vec3 h = vec3_normalise(vec3_add(wi, wo));
+        return above * fresnel_dielectric(fmax(vec3_dot(wi, h), REAL(0.0)), layer.eta) *
+               microfacet_reflection((int)layer.distribution, layer.alpha, wi, wo);
+    }
+#endif
+    return microfacet_reflection((int)stack.lobes[lobe].distribution, stack.lobes[lobe].alpha, wi,
+                                 wo);
+}
+#endif
+
+/// Scalar value of the rough top lobe, Fresnel included unless it depends on wavelength.
+#if FEATURE_ROUGH
+DEVICE_FUNCTION real layer_stack_top(LayerStackView stack, Vec3 wi, Vec3 wo) {
+    const LayerRecord top = stack.layers[0];
+    const real lobe = microfacet_reflection((int)top.distribution, top.alpha, wi, wo);
+    if (top.eta_lanes != NO_INDEX)
+        return lobe;
+    const Vec3 h = vec3_normalise(vec3_add(wi, wo));
+    return lobe * fresnel_dielectric(fmax(vec3_dot(wi, h), REAL(0.0)), top.eta);
+}
+#endif
+
+/// Scalar factor of the diffuse part: 1, or model A's interfaces (without absorption).
+DEVICE_FUNCTION real layer_stack_diffuse(LayerStackView stack, Vec3 wi, Vec3 wo) {
+#if FEATURE_WEIDLICH_WILKIE
+    if (stack.record.weidlich_wilkie)
+        return layer_stack_descend(stack.layers, stack.record.layer_count, &wi, &wo);
+#endif
+    return REAL(1.0);
+}
+
+KERNELS_END
+
+#endif

@@ -1,0 +1,55 @@
+// Counter-based random numbers: a number depends only on (pixel, sample, dimension, seed), so an
+// image does not depend on threads, batches or on how samples are spread over machines.
+#ifndef RERADIANT_RANDOM_H
+#define RERADIANT_RANDOM_H
+
+#include "kernels/portable.h"
+
+KERNELS_BEGIN
+
+typedef struct {
+    real a, b, c, d;
+} Random4;
+
+/// 24 bits to [0, 1): never 1, also in single precision (uint * 2^-32 can round up to 1).
+DEVICE_FUNCTION real random_unit(uint bits) {
+    return (real)(bits >> 8) * REAL(5.9604644775390625e-8);
+}
+
+/// Four independent numbers in [0, 1) for one dimension block. PCG4D: Jarzynski and Olano, "Hash
+/// Functions for GPU Rendering", JCGT 9(3), 2020, listing of pcg4d.
+DEVICE_FUNCTION Random4 random_4(uint pixel, uint sample, uint dimension, uint seed) {
+    uint x = pixel * 1664525u + 1013904223u;
+    uint y = sample * 1664525u + 1013904223u;
+    uint z = dimension * 1664525u + 1013904223u;
+    uint w = seed * 1664525u + 1013904223u;
+    x += y * w;
+    y += z * x;
+    z += x * y;
+    w += y * z;
+    x ^= x >> 16;
+    y ^= y >> 16;
+    z ^= z >> 16;
+    w ^= w >> 16;
+    x += y * w;
+    y += z * x;
+    z += x * y;
+    w += y * z;
+    Random4 r;
+    r.a = random_unit(x);
+    r.b = random_unit(y);
+    r.c = random_unit(z);
+    r.d = random_unit(w);
+    return r;
+}
+
+/// One number that depends on a pixel and the seed alone.
+DEVICE_FUNCTION uint random_hash(uint pixel, uint seed) {
+    uint state = (pixel ^ (seed * 2654435769u)) * 747796405u + 2891336453u;
+    uint word = ((state >> ((state >> 28) + 4u)) ^ state) * 277803737u;
+    return (word >> 22) ^ word;
+}
+
+KERNELS_END
+
+#endif

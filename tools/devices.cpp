@@ -1,0 +1,54 @@
+#include "host/atomic_file.h"
+#include "host/device/device.h"
+#include "tools/command.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace reradiant {
+
+namespace {
+
+nlohmann::json to_json(const DeviceInfo& device) {
+    return {{"index", device.index},
+            {"name", device.name},
+            {"platform", device.platform},
+            {"driver", device.driver},
+            {"version", device.version},
+            {"type", device.type},
+            {"compute_units", device.compute_units},
+            {"memory_bytes", device.memory_bytes},
+            {"max_allocation_bytes", device.max_allocation_bytes},
+            {"local_memory_bytes", device.local_memory_bytes},
+            {"max_work_group", device.max_work_group},
+            {"double", device.has_double}};
+}
+
+int run_devices(const CommonOptions& common) {
+    prepare_opencl(common.threads);
+    const std::vector<DeviceInfo> devices = list_devices();
+    nlohmann::json list = nlohmann::json::array();
+    for (const DeviceInfo& device : devices) {
+        list.push_back(to_json(device));
+        if (!common.quiet)
+            fmt::print("{}: {} ({}, {}, {} units, {:.1f} GiB, {})\n", device.index, device.name,
+                       device.platform, device.type, device.compute_units,
+                       static_cast<double>(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0),
+                       device.has_double ? "double" : "no double");
+    }
+    if (!common.json.empty())
+        write_text_atomically(common.json, nlohmann::json{{"devices", list}}.dump(2) + "\n");
+    if (devices.empty())
+        Device("0"); // throws the error that says what to install
+    return 0;
+}
+
+} // namespace
+
+void add_devices_command(CLI::App& program, CommandContext& context) {
+    CLI::App* command = program.add_subcommand("devices", "lists the OpenCL devices");
+    command->footer("Example: reradiant devices --json devices.json");
+    command->callback([&context] { context.exit_code = run_devices(context.common); });
+}
+
+} // namespace reradiant
