@@ -1,0 +1,31 @@
+#pragma once
+
+#include "host/scene/scene.h"
+#include "host/spectral/grid.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace reradiant {
+
+/// Texts of options that several commands share. Each throws an input Error that names the option
+/// and says what would be right.
+
+/// --bands FROM:TO:STEP, centres in nm.
+WavelengthGrid parse_bands_option(const std::string& text);
+/// --model auto|adding|weidlich-wilkie|walk
+Model parse_model_option(const std::string& text);
+/// --wavelengths comb[:N]: N, or 0 for one wavelength a film band.
+int parse_wavelengths_option(const std::string& text);
+
+struct SampleRange {
+    std::uint32_t first = 0, end = 0; ///< samples first .. end - 1
+};
+/// --sample-range A:B with A < B
+SampleRange parse_sample_range_option(const std::string& text);
+
+/// Refuses an output whose folder does not exist, before hours of work go into it.
+void check_output_folder(const std::filesystem::path& output);
+
+} // namespace reradiant

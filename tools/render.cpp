@@ -1,0 +1,237 @@
+#include "host/device/device.h"
+#include "host/error.h"
+#include "host/film/spectral_image.h"
+#include "host/render/renderer.h"
+#include "host/report/json_file.h"
+#include "host/report/progress.h"
+#include "host/scene/scene.h"
+#include "tools/command.h"
+#include "tools/parse_options.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <memory>
+#include <sys/resource.h>
+
+namespace reradiant {
+
+namespace {
+
+struct RenderCommand {
+    std::filesystem::path scene, output, png;
+    RenderOptions render;
+    DisplayOptions display;
+    std::string model = "auto", wavelengths = "comb", bands, variance, sample_range,
+                phase = "random";
+    bool samples_given = false;
+};
+
+constexpr int exit_interrupted = 130;
+volatile std::sig_atomic_t interrupted = 0;
+void note_interrupt(int) {
+    interrupted = 1;
+}
+
+std::uint64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Numbers that JSON has no name for become null.
+nlohmann::ordered_json finite_or_null(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+nlohmann::ordered_json statistics_json(const RenderResult& result, const Device& device,
+                                       const RenderCommand& command) {
+    const double rendering = result.trace_seconds + result.shade_seconds;
+    const WavelengthPlan& plan = result.plan;
+    nlohmann::ordered_json passes = nlohmann::ordered_json::array();
+    for (const RenderProgress& pass : result.passes)
+        passes.push_back({{"spp", pass.samples},
+                          {"seconds", pass.seconds},
+                          {"relmse", finite_or_null(pass.relmse)}});
+    nlohmann::ordered_json features;
+    for (const auto& [name, on] : result.features)
+        features[name] = on ? "on" : "off";
+    return {
+        {"spp", result.samples},
+        {"seconds",
+         {{"setup", result.setup_seconds},
+          {"build", result.build_seconds},
+          {"trace", result.trace_seconds},
+          {"shade", result.shade_seconds},
+          {"total", result.total_seconds}}},
+        {"paths", result.paths},
+        {"rays", result.rays},
+        {"paths_per_second", rendering > 0.0 ? static_cast<double>(result.paths) / rendering : 0.0},
+        {"relmse", finite_or_null(result.relmse)},
+        {"non_finite", result.non_finite},
+        {"device", device.info().name},
+        {"bands",
+         {{"from", plan.film.from_nm},
+          {"to", plan.film.to_nm()},
+          {"step", plan.film.step_nm},
+          {"count", plan.film.count}}},
+        {"model", command.model},
+        {"wavelengths",
+         {{"sampling", "comb"},
+          {"count", plan.comb.count},
+          {"from", plan.comb.from_nm},
+          {"step", plan.comb.step_nm},
+          {"phases", plan.phases},
+          {"lines", plan.lanes.size() - static_cast<std::size_t>(plan.comb.count)}}},
+        {"features", features},
+        {"left_out", result.left_out},
+        {"notes", result.notes},
+        {"passes", passes},
+        {"kernels",
+         {{"built", result.build.built},
+          {"from_cache", result.build.from_cache},
+          {"source_bytes", result.build.source_bytes}}},
+        {"device_bytes", result.device_bytes},
+        {"table_bytes", result.table_bytes},
+        {"peak_memory_bytes", peak_memory_bytes()}};
+}
+
+void describe_image(RenderResult& result, const Scene& scene, const Device& device,
+                    const RenderCommand& command, const CommandContext& context) {
+    auto& attributes = result.image.attributes;
+    attributes["reradiant:scene"] = scene.file.filename().string();
+    attributes["reradiant:sceneHash"] = scene.hash;
+    attributes["reradiant:seed"] = std::to_string(command.render.seed);
+    attributes["reradiant:firstSample"] = std::to_string(command.render.first_sample);
+    attributes["reradiant:samples"] = std::to_string(result.samples);
+    attributes["reradiant:device"] = device.info().name;
+    attributes["reradiant:commandLine"] = context.command_line;
+    if (result.non_finite > 0)
+        spdlog::warn("{} samples were not finite and were left out", result.non_finite);
+}
+
+void apply_texts(RenderCommand& command, const CommonOptions& common) {
+    command.render.seed = common.seed;
+    command.render.threads = common.threads;
+    command.render.model = parse_model_option(command.model);
+    command.render.wavelengths.comb_count = parse_wavelengths_option(command.wavelengths);
+    command.render.wavelengths.centred = command.phase == "centre";
+    command.render.wavelengths.keep_all = command.render.all_features;
+    command.render.band_variance = command.variance == "bands";
+    if (!command.bands.empty())
+        command.render.bands = parse_bands_option(command.bands);
+    if (!command.sample_range.empty()) {
+        const SampleRange range = parse_sample_range_option(command.sample_range);
+        command.render.first_sample = range.first;
+        command.render.samples = range.end - range.first;
+    } else if (!command.samples_given &&
+               (std::isfinite(command.render.time_seconds) || command.render.relmse > 0.0)) {
+        command.render.samples = 1u << 30; // time or error decide
+    }
+}
+
+void print_summary(const RenderResult& result, const RenderCommand& command) {
+    const double rendering = result.trace_seconds + result.shade_seconds;
+    fmt::print("{}: {} samples a pixel, {} bands, estimated relMSE {:.3g}\n",
+               command.output.string(), result.samples, result.plan.film.count, result.relmse);
+    fmt::print("set-up {:.2f} s, kernels {:.2f} s, rays {:.2f} s, shading {:.2f} s; {:.2f} million "
+               "paths/s\n",
+               result.setup_seconds, result.build_seconds, result.trace_seconds,
+               result.shade_seconds,
+               rendering > 0.0 ? static_cast<double>(result.paths) / rendering * 1e-6 : 0.0);
+    for (const std::string& note : result.notes)
+        fmt::print("{}\n", note);
+    fmt::print("left out: {}\n", fmt::join(result.left_out, "; "));
+}
+
+int run_render(RenderCommand command, const CommandContext& context) {
+    const CommonOptions& common = context.common;
+    apply_texts(command, common);
+    check_output_folder(command.output);
+    const Scene scene = load_scene(command.scene);
+    prepare_opencl(common.threads);
+    const Device device(common.device);
+    std::signal(SIGINT, note_interrupt);
+    std::signal(SIGTERM, note_interrupt);
+    RenderResult result;
+    {
+        ProgressBar bar(common.quiet);
+        result = render(scene, device, command.render, [&](const RenderProgress& state) {
+            const double by_samples = static_cast<double>(state.samples) / command.render.samples;
+            const double by_time = state.seconds / command.render.time_seconds;
+            bar.update(std::min(1.0, std::max(by_samples, by_time)),
+                       fmt::format("{} spp, relMSE {:.2g}", state.samples, state.relmse));
+            return interrupted == 0;
+        });
+    }
+    describe_image(result, scene, device, command, context);
+    write_spectral_exr(command.output, result.image, command.display.exposure_ev);
+    if (!command.png.empty()) {
+        const std::size_t outside = write_display_png(command.png, result.image, command.display);
+        if (outside > 0 && !common.quiet)
+            fmt::print("{} of {} pixels lie outside the display's gamut\n", outside,
+                       static_cast<std::size_t>(result.image.width) *
+                           static_cast<std::size_t>(result.image.height));
+    }
+    if (!common.json.empty())
+        write_json(common.json, statistics_json(result, device, command));
+    if (!common.quiet)
+        print_summary(result, command);
+    return interrupted ? exit_interrupted : 0;
+}
+
+void add_stopping_options(CLI::App& app, RenderCommand& command) {
+    app.add_option("--spp", command.render.samples, "samples a pixel (64 unless --time or --error)")
+        ->check(CLI::Range(1u, 1u << 30))
+        ->each([&command](const std::string&) { command.samples_given = true; });
+    app.add_option("--time", command.render.time_seconds, "stop after so many seconds")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--error", command.render.relmse, "stop at this estimated relMSE")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--sample-range", command.sample_range,
+                   "only samples A to B - 1 of every pixel, as A:B");
+    app.add_option("--memory-limit", command.render.memory_limit_bytes,
+                   "refuse a render that would take more bytes (default: 80 % of the machine's)");
+}
+
+void add_sampling_options(CLI::App& app, RenderCommand& command) {
+    app.add_option("--model", command.model, "auto, adding or weidlich-wilkie for every material");
+    app.add_option("--wavelengths", command.wavelengths, "comb or comb:N, N wavelengths a path");
+    app.add_option("--comb-phase", command.phase,
+                   "random: anywhere in a band; centre: at the band centres only")
+        ->check(CLI::IsMember({"random", "centre"}));
+    app.add_option("--bands", command.bands, "film bands in nm, FROM:TO:STEP");
+    app.add_option("--variance", command.variance, "bands: variance per band, too")
+        ->check(CLI::IsMember({"bands"}));
+    app.add_flag("--all-features", command.render.all_features, "specialise nothing");
+    app.add_option("--batch", command.render.batch_paths,
+                   "paths in flight; the image does not depend on it")
+        ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24));
+}
+
+void add_display_options(CLI::App& app, RenderCommand& command) {
+    app.add_option("--png", command.png, "write the display image too");
+    app.add_option("--ocio", command.display.ocio_config, "OpenColorIO config");
+    app.add_option("--display", command.display.display, "display of the config");
+    app.add_option("--view", command.display.view, "view of the display");
+    app.add_option("--exposure", command.display.exposure_ev, "exposure of the display image, EV");
+}
+
+} // namespace
+
+void add_render_command(CLI::App& program, CommandContext& context) {
+    auto command = std::make_shared<RenderCommand>();
+    CLI::App* app = program.add_subcommand("render", "path traces a scene to a spectral EXR");
+    app->add_option("SCENE", command->scene, "scene file (TOML)")->required();
+    app->add_option("-o,--output", command->output, "spectral EXR to write")->required();
+    add_stopping_options(*app, *command);
+    add_sampling_options(*app, *command);
+    add_display_options(*app, *command);
+    app->footer("Example: reradiant render scene.toml -o out.exr --png out.png --spp 256");
+    app->callback([command, &context] { context.exit_code = run_render(*command, context); });
+}
+
+} // namespace reradiant
