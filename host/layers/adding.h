@@ -20,7 +20,7 @@ namespace reradiant {
 ///   (multiple scattering between facets and layers), reciprocal (Kelemen-Szirmay-Kalos 2001).
 /// The integral over co of everything equals `specular_albedo(ci)`.
 class AddingTransport {
-  public:
+public:
     virtual ~AddingTransport() = default;
 
     /// Share of the flux from air direction cos_theta that arrives at the substrate.

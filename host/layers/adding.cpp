@@ -1,0 +1,78 @@
+#include "host/layers/adding.h"
+
+#include "host/error.h"
+#include "host/layers/rough_system.h"
+#include "host/layers/rough_transport.h"
+#include "host/layers/smooth_transport.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <deque>
+#include <mutex>
+
+namespace reradiant {
+
+namespace {
+
+void check_layer(const LayerValues& layer, std::size_t index) {
+    const auto refuse = [&](const char* what, double value, const char* remedy) {
+        throw_input_error({}, fmt::format("layer {} has {} {}", index + 1, what, value), remedy);
+    };
+    if (!(layer.ior > 0.0) || !std::isfinite(layer.ior)) {
+        refuse("index of refraction", layer.ior, "it must be a positive number");
+    }
+    if (!(layer.tau >= 0.0)) {
+        refuse("optical depth", layer.tau, "absorption and thickness must not be negative");
+    }
+    if (!(layer.alpha >= 0.0) || !(layer.alpha <= 1.0)) {
+        refuse("roughness alpha", layer.alpha, "it must be between 0 and 1");
+    }
+}
+
+/// The last transports of rough stacks: a grey material asks for the same one at every wavelength.
+class RecentTransports {
+public:
+    std::shared_ptr<const AddingTransport> find(const StackValues& stack) {
+        const std::scoped_lock lock(mutex_);
+        for (const auto& [known, transport] : recent_) {
+            if (known == stack) {
+                return transport;
+            }
+        }
+        return nullptr;
+    }
+    void remember(const StackValues& stack, std::shared_ptr<const AddingTransport> transport) {
+        const std::scoped_lock lock(mutex_);
+        recent_.emplace_front(stack, std::move(transport));
+        if (recent_.size() > 64) {
+            recent_.pop_back();
+        }
+    }
+
+private:
+    std::mutex mutex_;
+    std::deque<std::pair<StackValues, std::shared_ptr<const AddingTransport>>> recent_;
+};
+
+} // namespace
+
+std::shared_ptr<const AddingTransport> adding_transport(const StackValues& stack) {
+    bool rough = false;
+    for (std::size_t k = 0; k < stack.size(); ++k) {
+        check_layer(stack[k], k);
+        rough = rough || is_rough_interface(stack, k);
+    }
+    if (!rough) {
+        return smooth_transport(stack);
+    }
+    static RecentTransports recent;
+    if (auto known = recent.find(stack)) {
+        return known;
+    }
+    auto transport = rough_transport(stack);
+    recent.remember(stack, transport);
+    return transport;
+}
+
+} // namespace reradiant

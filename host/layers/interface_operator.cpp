@@ -1,0 +1,120 @@
+#include "host/layers/interface_operator.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+namespace reradiant {
+
+namespace {
+
+/// Estimates the column of one cell: shares of its flux by cell of departure, times its etendue.
+/// Returns the mean of the first reflection lobe.
+double estimate_column(const InterfaceOperator& op, int cell, Eigen::VectorXd& column) {
+    const int above = op.above.cells();
+    const bool from_below = cell >= above;
+    const AngularGrid& own = from_below ? op.below : op.above;
+    const AngularGrid& other = from_below ? op.above : op.below;
+    const int own_first = from_below ? above : 0, other_first = from_below ? 0 : above;
+    const auto k = static_cast<std::size_t>(cell - own_first);
+    const double low2 = own.edges[k] * own.edges[k];
+    const double high2 = own.edges[k + 1] * own.edges[k + 1];
+    std::vector<Departure> departures;
+    double lobe = 0.0;
+    column.setZero();
+    for (unsigned walk = 0; walk < WalkNumbers::count; ++walk) {
+        WalkNumbers numbers(walk);
+        // uniform in c^2: uniform in flux
+        const double cosine = std::sqrt(low2 + (high2 - low2) * numbers.next());
+        departures.clear();
+        lobe += scatter_at_interface(op.interface, from_below, std::min(cosine, 1.0), numbers,
+                                     departures);
+        for (const Departure& d : departures) {
+            const int to = d.same_side ? own_first + own.cell_of(d.cosine)
+                                       : other_first + other.cell_of(d.cosine);
+            column(to) += d.share;
+        }
+    }
+    const double e = own.ior * own.ior * (high2 - low2);
+    column *= e / WalkNumbers::count;
+    return lobe / WalkNumbers::count;
+}
+
+/// Every entry estimated from both ends: the variance of the estimate from cell j is proportional
+/// to j's etendue, so weights are the other cell's etendue.
+void symmetrise(Eigen::MatrixXd& matrix, const Eigen::VectorXd& e) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+        for (Eigen::Index i = 0; i < j; ++i) {
+            const double s = (e(i) * matrix(i, j) + e(j) * matrix(j, i)) / (e(i) + e(j));
+            matrix(i, j) = s;
+            matrix(j, i) = s;
+        }
+    }
+}
+
+/// Puts back what single scattering loses, reciprocally.
+void add_lost_flux(Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
+    const Eigen::VectorXd lost = (target - matrix.colwise().sum().transpose()).cwiseMax(0.0);
+    const double total = lost.sum();
+    if (total > 0.0) {
+        matrix += lost * lost.transpose() / total;
+    }
+}
+
+} // namespace
+
+Eigen::VectorXd InterfaceOperator::etendue() const {
+    Eigen::VectorXd e(above.cells() + below.cells());
+    e << above.etendue(), below.etendue();
+    return e;
+}
+
+void scale_symmetric(Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
+    Eigen::VectorXd d = Eigen::VectorXd::Ones(target.size());
+    for (int step = 0; step < 500; ++step) {
+        const Eigen::VectorXd sums = d.cwiseProduct(matrix * d);
+        const Eigen::VectorXd ratio = target.cwiseQuotient(sums);
+        d = d.cwiseProduct(ratio.cwiseSqrt());
+        if ((ratio.array() - 1.0).abs().maxCoeff() < 1e-14) {
+            break;
+        }
+    }
+    matrix = (d.asDiagonal() * matrix * d.asDiagonal()).eval();
+}
+
+InterfaceOperator empty_interface_operator(const RoughInterface& interface) {
+    const double eta = interface.eta;
+    const double critical = std::sqrt((eta - 1.0) * (eta + 1.0)) / eta;
+    return {interface,
+            make_angular_grid(1.0, 0.0, interface_cells),
+            make_angular_grid(eta, critical, interface_cells),
+            {},
+            {}};
+}
+
+InterfaceOperator compute_interface_operator(const RoughInterface& interface) {
+    InterfaceOperator op = empty_interface_operator(interface);
+    const int cells = op.above.cells() + op.below.cells();
+    op.exchange.resize(cells, cells);
+    Eigen::VectorXd lobes(cells);
+    tbb::parallel_for(tbb::blocked_range<int>(0, cells, 1), [&](const auto& range) {
+        Eigen::VectorXd column(cells);
+        for (int j = range.begin(); j != range.end(); ++j) {
+            lobes(j) = estimate_column(op, j, column);
+            op.exchange.col(j) = column;
+        }
+    });
+    op.first_lobe = lobes.head(op.above.cells());
+    const Eigen::VectorXd e = op.etendue();
+    symmetrise(op.exchange, e);
+    if (interface.scattering == Scattering::Multiple) {
+        if (interface.distribution == Distribution::Blinn) {
+            add_lost_flux(op.exchange, e);
+        }
+        scale_symmetric(op.exchange, e);
+    }
+    return op;
+}
+
+} // namespace reradiant

@@ -1,0 +1,217 @@
+#include "host/layers/rough_transport.h"
+
+#include "host/layers/quadrature.h"
+#include "host/layers/rough_system.h"
+#include "host/layers/specular_lobes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+
+namespace reradiant {
+
+namespace {
+
+/// Fits are the same for all stacks with the same upper side of the first rough interface.
+std::shared_ptr<const CellFit> fit_of(const AngularGrid& grid) {
+    static std::mutex mutex;
+    static std::map<double, std::shared_ptr<const CellFit>> known;
+    const std::scoped_lock lock(mutex);
+    auto& fit = known[grid.critical];
+    if (!fit) {
+        fit = std::make_shared<CellFit>(grid);
+    }
+    return fit;
+}
+
+class RoughTransport final : public AddingTransport {
+public:
+    explicit RoughTransport(const StackValues& stack)
+        : stack_(stack), system_(stack, stack.size()), fit_(fit_of(system_.top_grid())) {
+        top_ = system_.top();
+        top_rough_ = top_.ior.size() == 1;
+        const RoughResponse response = system_.solve();
+        substrate_ = fit_->coefficients(response.to_substrate);
+        air_ = fit_->coefficients(response.to_air);
+        lost_ = fit_->coefficients(response.lost);
+        internal_reflectance_ = std::clamp(response.internal_reflectance, 0.0, 1.0);
+        make_reciprocal(response.escape);
+        make_lobes();
+        residual_average_ =
+            integrate_pieces(breaks_, 64, [this](double c) { return 2.0 * c * residual(c); });
+    }
+
+    double transmission(double c) const override { return shares(c).transmission; }
+    double internal_reflectance() const override { return internal_reflectance_; }
+    double lowest_ior() const override { return stack_.back().ior; }
+    double specular_albedo(double c) const override { return shares(c).specular; }
+    double specular_delta(double c) const override {
+        return smooth_response(top_, 1.0, std::clamp(c, 0.0, 1.0)).reflection_down;
+    }
+    bool has_top_lobe() const override { return top_rough_; }
+    const std::vector<Lobe>& deeper_lobes() const override { return lobes_; }
+    double lobe_amplitude(int lobe, double c) const override {
+        return std::max(tables_.at(static_cast<std::size_t>(lobe)).amplitude(c), 0.0);
+    }
+    double residual(double c) const override {
+        double rest = specular_albedo(c) - specular_delta(c) - top_lobe_albedo(c);
+        for (const LobeTables& table : tables_) {
+            rest -= table.albedo(c);
+        }
+        return std::max(rest, 0.0);
+    }
+    double residual_average() const override { return residual_average_; }
+    double lost(double c) const override { return shares(c).lost; }
+
+private:
+    struct Shares {
+        double transmission, specular, lost;
+    };
+
+    /// Through the smooth interfaces at the top exactly, then by the fitted functions of the
+    /// cosine above the first rough interface.
+    Shares shares(double cosine) const {
+        const double c = std::clamp(cosine, 0.0, 1.0);
+        const SmoothResponse in = smooth_response(top_, 1.0, c);
+        if (in.transmission <= 0.0) {
+            return {0.0, in.reflection_down, 0.0};
+        }
+        const double inside = inner_cosine(c);
+        const double raw = std::clamp(fit_->evaluate(substrate_, inside), 0.0, 1.0);
+        const double to_substrate = reciprocity_ * raw;
+        // the correction moves light between the two, so that nothing is created
+        const double to_air = std::max(fit_->evaluate(air_, inside) + (raw - to_substrate), 0.0);
+        const double lost = std::max(fit_->evaluate(lost_, inside), 0.0);
+        return {in.transmission * to_substrate, in.reflection_down + in.transmission * to_air,
+                in.transmission * lost};
+    }
+
+    double inner_cosine(double c) const {
+        const double n = top_.ior.back();
+        const double g2 = (n - 1.0) * (n + 1.0) + c * c;
+        return g2 > 0.0 ? std::min(std::sqrt(g2) / n, 1.0) : 0.0;
+    }
+
+    /// Scales the transmission by the last parts in 1e4, so that 2 integral c T dc is n_k^2 times
+    /// the flux that the substrate sends out: an albedo of 1 stays 1 to rounding.
+    void make_reciprocal(double escape) {
+        std::vector<double> inner;
+        for (const double n : top_.ior) {
+            inner.push_back(std::sqrt(std::fabs((n - 1.0) * (n + 1.0))));
+        }
+        const AngularGrid& grid = system_.top_grid();
+        if (grid.critical > 0.0) {
+            const double n = top_.ior.back();
+            const double c2 = 1.0 - n * n * (1.0 - grid.critical) * (1.0 + grid.critical);
+            inner.push_back(std::sqrt(std::max(c2, 0.0)));
+        }
+        breaks_ = breaks_between_0_and_1(inner);
+        const double integral = integrate_pieces(
+            breaks_, 64, [this](double c) { return 2.0 * c * shares(c).transmission; });
+        const double n = stack_.back().ior;
+        if (integral > 0.0) {
+            reciprocity_ = n * n * escape / integral;
+        }
+    }
+
+    double top_lobe_albedo(double c) const {
+        return top_rough_ ? std::max(fit_->evaluate(top_lobe_, c), 0.0) : 0.0;
+    }
+
+    /// Specular albedo of the stack cut off (black) under its first `count` layers.
+    Eigen::VectorXd cut_albedo(std::size_t count) const {
+        return fit_->coefficients(RoughSystem(stack_, count).solve().to_air);
+    }
+
+    /// First reflection lobe at the top, then one lobe for each deeper rough interface and for
+    /// each run of smooth interfaces beneath a rough one.
+    void make_lobes() {
+        std::size_t k = top_.ior.size() - 1;
+        Eigen::VectorXd above = Eigen::VectorXd::Zero(air_.size());
+        if (top_rough_) {
+            set_top_lobe();
+            ++k;
+            if (k < stack_.size()) {
+                above = cut_albedo(k);
+            }
+        }
+        while (k < stack_.size()) {
+            const std::size_t first = k++;
+            if (!is_rough_interface(stack_, first)) {
+                while (k < stack_.size() && !is_rough_interface(stack_, k)) {
+                    ++k;
+                }
+            }
+            const Eigen::VectorXd cut = k == stack_.size() ? air_ : cut_albedo(k);
+            add_lobe(first, cut - above);
+            above = cut;
+        }
+    }
+
+    void set_top_lobe() {
+        if (system_.first_lobe().size() > 0) {
+            top_lobe_ = fit_->coefficients(system_.first_lobe());
+        } else {
+            top_lobe_ = fit_->coefficients(inverted_first_lobe());
+        }
+    }
+
+    /// Albedo of the top lobe towards a thinner medium, by quadrature over facets.
+    Eigen::VectorXd inverted_first_lobe() const {
+        const LayerValues& layer = stack_.front();
+        const AngularGrid& grid = system_.top_grid();
+        const RoughInterface interface {
+            1.0 / layer.ior, layer.distribution, layer.alpha, Scattering::Single
+        };
+        Eigen::VectorXd albedo = Eigen::VectorXd::Zero(grid.cells());
+        std::vector<Departure> departures;
+        for (int cell = 0; cell < grid.cells(); ++cell) {
+            const double low = grid.edges[static_cast<std::size_t>(cell)];
+            const double high = grid.edges[static_cast<std::size_t>(cell) + 1];
+            for (unsigned walk = 0; walk < WalkNumbers::count; ++walk) {
+                WalkNumbers numbers(walk);
+                const double c =
+                    std::sqrt(low * low + (high - low) * (high + low) * numbers.next());
+                departures.clear();
+                albedo(cell) +=
+                    scatter_at_interface(interface, true, std::min(c, 1.0), numbers, departures) /
+                    WalkNumbers::count;
+            }
+        }
+        return albedo;
+    }
+
+    void add_lobe(std::size_t index, const Eigen::VectorXd& coefficients) {
+        std::size_t shape = index; // a smooth interface takes the shape of the rough one above it
+        while (shape > 0 && stack_[shape].alpha == 0.0) {
+            --shape;
+        }
+        const Lobe lobe{stack_[shape].distribution, effective_lobe_width(stack_, index)};
+        lobes_.push_back(lobe);
+        tables_.push_back(fit_lobe(lobe, [&](double c) {
+            const double in = smooth_response(top_, 1.0, c).transmission;
+            return in > 0.0 ? in * fit_->evaluate(coefficients, inner_cosine(c)) : 0.0;
+        }));
+    }
+
+    StackValues stack_;
+    RoughSystem system_;
+    std::shared_ptr<const CellFit> fit_;
+    SmoothStack top_;
+    bool top_rough_ = false;
+    double reciprocity_ = 1.0;
+    double internal_reflectance_ = 0.0, residual_average_ = 0.0;
+    Eigen::VectorXd substrate_, air_, lost_, top_lobe_;
+    std::vector<double> breaks_;
+    std::vector<Lobe> lobes_;
+    std::vector<LobeTables> tables_;
+};
+
+} // namespace
+
+std::shared_ptr<const AddingTransport> rough_transport(const StackValues& stack) {
+    return std::make_shared<RoughTransport>(stack);
+}
+
+} // namespace reradiant

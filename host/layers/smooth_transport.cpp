@@ -1,0 +1,70 @@
+#include "host/layers/smooth_transport.h"
+
+#include "host/layers/quadrature.h"
+#include "host/layers/smooth_stack.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace reradiant {
+
+namespace {
+
+constexpr int integration_nodes = 64;
+
+class SmoothTransport final : public AddingTransport {
+public:
+    explicit SmoothTransport(const StackValues& stack) {
+        stack_.ior.push_back(1.0);
+        stack_.tau.push_back(0.0);
+        for (const LayerValues& layer : stack) {
+            stack_.ior.push_back(layer.ior);
+            stack_.tau.push_back(layer.tau);
+        }
+        internal_reflectance_ = integrate_internal_reflectance();
+    }
+
+    double transmission(double c) const override { return response(c).transmission; }
+    double internal_reflectance() const override { return internal_reflectance_; }
+    double lowest_ior() const override { return stack_.ior.back(); }
+    double specular_albedo(double c) const override { return response(c).reflection_down; }
+    double specular_delta(double c) const override { return response(c).reflection_down; }
+    bool has_top_lobe() const override { return false; }
+    const std::vector<Lobe>& deeper_lobes() const override { return no_lobes_; }
+    double lobe_amplitude(int, double) const override { return 0.0; }
+    double residual(double) const override { return 0.0; }
+    double residual_average() const override { return 0.0; }
+    double lost(double) const override { return 0.0; }
+
+private:
+    SmoothResponse response(double c) const {
+        return smooth_response(stack_, 1.0, std::clamp(c, 0.0, 1.0));
+    }
+
+    /// 1 - 2 integral (1 - R_up) c dc over the lowest medium, split at every critical cosine and
+    /// at the scale where a denser medium above changes the path.
+    double integrate_internal_reflectance() const {
+        const double n = stack_.ior.back();
+        std::vector<double> inner;
+        for (const double above : stack_.ior) {
+            inner.push_back(std::sqrt(std::fabs((n - above) * (n + above))) / n);
+        }
+        const double loss =
+            integrate_pieces(breaks_between_0_and_1(inner), integration_nodes, [&](double c) {
+                return 2.0 * c * smooth_response(stack_, n, c).loss_up;
+            });
+        return std::clamp(1.0 - loss, 0.0, 1.0);
+    }
+
+    SmoothStack stack_;
+    double internal_reflectance_ = 0.0;
+    std::vector<Lobe> no_lobes_;
+};
+
+} // namespace
+
+std::shared_ptr<const AddingTransport> smooth_transport(const StackValues& stack) {
+    return std::make_shared<SmoothTransport>(stack);
+}
+
+} // namespace reradiant
