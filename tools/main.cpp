@@ -7,6 +7,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <new>
 #include <string>
 #include <vector>
@@ -102,7 +103,7 @@ int parse_and_run(CLI::App& program, CommandContext& context, int argc, char** a
         return fail(exit_bad_input,
                     fmt::format("reradiant: no command given; take one of: {}", list));
     const std::string first = argv[1];
-    if (!first.starts_with("-") && !program.get_subcommand_no_throw(first))
+    if (!first.starts_with("-") && std::find(names.begin(), names.end(), first) == names.end())
         return fail(exit_bad_input,
                     fmt::format("reradiant: unknown command '{}'; take one of: {}", first, list));
     try {

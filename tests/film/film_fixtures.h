@@ -19,11 +19,11 @@ namespace reradiant {
 /// An empty folder for one test, removed with it.
 class TemporaryFolder {
 public:
-    TemporaryFolder() {
+    explicit TemporaryFolder(const std::string& purpose = "files") {
         const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
         path_ = std::filesystem::temp_directory_path() /
                 ("reradiant-" + std::string(test->test_suite_name()) + "-" + test->name() + "-" +
-                 std::to_string(::getpid()));
+                 purpose + "-" + std::to_string(::getpid()));
         std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }
