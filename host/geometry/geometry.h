@@ -12,7 +12,7 @@ namespace reradiant {
 /// The scene's surfaces (shapes, and the lights that have a surface) behind Embree.
 /// All functions may be called from any thread.
 class Geometry {
-  public:
+public:
     /// Throws an input Error that names shape and primitive for NaN, Inf, coordinates beyond
     /// 1e18, indices out of range and degenerate sizes (CASES 6, 7).
     explicit Geometry(const Scene& scene);
@@ -32,7 +32,7 @@ class Geometry {
     std::size_t memory_bytes() const; ///< what Embree reports
     const char* library_version() const;
 
-  private:
+private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };

@@ -1,0 +1,330 @@
+#include "host/geometry/geometry.h"
+
+#include "host/geometry/embree_version.h"
+#include "host/geometry/surfaces.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace reradiant {
+
+namespace {
+
+/// Embree's own bounds are single precision: the next number outwards, and a little more because
+/// a flat box is tested with rounding too.
+RTCBounds outer_bounds(const Box& box) {
+    const auto widen = [](double value, double sign) {
+        return static_cast<float>(value + sign * (std::fabs(value) * 2.5e-7 + 1e-35));
+    };
+    RTCBounds bounds{};
+    bounds.lower_x = widen(box.lower.x, -1.0);
+    bounds.lower_y = widen(box.lower.y, -1.0);
+    bounds.lower_z = widen(box.lower.z, -1.0);
+    bounds.upper_x = widen(box.upper.x, 1.0);
+    bounds.upper_y = widen(box.upper.y, 1.0);
+    bounds.upper_z = widen(box.upper.z, 1.0);
+    return bounds;
+}
+
+Ray ray_of(RTCRayN* ray, unsigned int count, unsigned int i) {
+    return {kernels::vec3(RTCRayN_org_x(ray, count, i), RTCRayN_org_y(ray, count, i),
+                          RTCRayN_org_z(ray, count, i)),
+            kernels::vec3(RTCRayN_dir_x(ray, count, i), RTCRayN_dir_y(ray, count, i),
+                          RTCRayN_dir_z(ray, count, i)),
+            RTCRayN_tnear(ray, count, i), RTCRayN_tfar(ray, count, i)};
+}
+
+Ray ray_of(const RayRecord& r) {
+    return {kernels::vec3(r.origin_x, r.origin_y, r.origin_z),
+            kernels::vec3(r.direction_x, r.direction_y, r.direction_z), r.t_near,
+            std::numeric_limits<double>::infinity()};
+}
+
+template <typename Primitive>
+const Primitive& primitive_of(const void* user, unsigned int index) {
+    return static_cast<const OwnedPrimitives<Primitive>*>(user)->primitives[index];
+}
+
+template <typename Primitive>
+void bounds_callback(const RTCBoundsFunctionArguments* arguments) {
+    *arguments->bounds_o = outer_bounds(
+        primitive_of<Primitive>(arguments->geometryUserPtr, arguments->primID).bounds());
+}
+
+template <typename Primitive>
+void intersect_callback(const RTCIntersectFunctionNArguments* arguments) {
+    const auto& primitive = primitive_of<Primitive>(arguments->geometryUserPtr, arguments->primID);
+    const unsigned int count = arguments->N;
+    RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, count);
+    RTCHitN* hits = RTCRayHitN_HitN(arguments->rayhit, count);
+    for (unsigned int i = 0; i < count; ++i) {
+        if (arguments->valid[i] == 0)
+            continue;
+        const double t = primitive.intersect(ray_of(rays, count, i));
+        if (t < 0.0)
+            continue;
+        RTCRayN_tfar(rays, count, i) = static_cast<float>(t);
+        RTCHitN_geomID(hits, count, i) = arguments->geomID;
+        RTCHitN_primID(hits, count, i) = arguments->primID;
+        RTCHitN_instID(hits, count, i, 0) = arguments->context->instID[0];
+    }
+}
+
+template <typename Primitive>
+void occluded_callback(const RTCOccludedFunctionNArguments* arguments) {
+    const auto& primitive = primitive_of<Primitive>(arguments->geometryUserPtr, arguments->primID);
+    for (unsigned int i = 0; i < arguments->N; ++i)
+        if (arguments->valid[i] != 0 &&
+            primitive.intersect(ray_of(arguments->ray, arguments->N, i)) >= 0.0)
+            RTCRayN_tfar(arguments->ray, arguments->N, i) = -std::numeric_limits<float>::infinity();
+}
+
+bool is_traceable(const RayRecord& r) {
+    const float sum = r.origin_x + r.origin_y + r.origin_z + r.direction_x + r.direction_y +
+                      r.direction_z + r.t_near;
+    const bool has_direction =
+        r.direction_x != 0.0f || r.direction_y != 0.0f || r.direction_z != 0.0f;
+    // Debian's Embree aborts on a ray that is not finite (CASES 6).
+    return r.t_far >= 0.0f && std::isfinite(sum) && has_direction;
+}
+
+RTCRay embree_ray(const RayRecord& r) {
+    RTCRay ray{};
+    ray.org_x = r.origin_x;
+    ray.org_y = r.origin_y;
+    ray.org_z = r.origin_z;
+    ray.tnear = std::fmax(r.t_near, 0.0f);
+    ray.dir_x = r.direction_x;
+    ray.dir_y = r.direction_y;
+    ray.dir_z = r.direction_z;
+    ray.tfar = r.t_far;
+    ray.mask = 0xffffffffu;
+    return ray;
+}
+
+HitRecord no_hit() {
+    HitRecord record{};
+    record.shape = record.material = record.light = NO_INDEX;
+    return record;
+}
+
+HitRecord record_of(const SurfaceHit& hit, const Owner& owner) {
+    const auto f = [](double x) { return static_cast<float>(x); };
+    HitRecord r{};
+    r.position_x = f(hit.position.x);
+    r.position_y = f(hit.position.y);
+    r.position_z = f(hit.position.z);
+    r.position_error = f(hit.position_error);
+    r.normal_x = f(hit.normal.x);
+    r.normal_y = f(hit.normal.y);
+    r.normal_z = f(hit.normal.z);
+    r.distance = f(hit.distance);
+    r.shading_x = f(hit.shading.x);
+    r.shading_y = f(hit.shading.y);
+    r.shading_z = f(hit.shading.z);
+    r.shape = owner.shape;
+    r.u = f(hit.u);
+    r.v = f(hit.v);
+    r.material = owner.material;
+    r.light = owner.light;
+    return r;
+}
+
+/// Runs work(i) for i below count on `threads` threads (0: all). Every ray is traced by itself,
+/// so results do not depend on how the batch is cut.
+template <typename Work>
+void for_each_ray(std::size_t count, int threads, const Work& work) {
+    constexpr std::size_t RAYS_A_TASK = 1024;
+    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+    arena.execute([&] {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, RAYS_A_TASK),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t i = range.begin(); i < range.end(); ++i)
+                                  work(i);
+                          });
+    });
+}
+
+} // namespace
+
+struct Geometry::Implementation {
+    explicit Implementation(const Scene& scene);
+    ~Implementation();
+    Implementation(const Implementation&) = delete;
+    Implementation& operator=(const Implementation&) = delete;
+
+    template <typename Primitive>
+    void attach(const OwnedPrimitives<Primitive>& owned);
+    void attach(const OwnedMesh& mesh);
+    void check(const char* doing) const;
+    HitRecord describe(const RayRecord& record, const RTCRayHit& found) const;
+    template <typename Primitive>
+    HitRecord describe(const OwnedPrimitives<Primitive>& owned, unsigned int index, Ray ray,
+                       double t) const;
+
+    Surfaces surfaces;
+    std::vector<const void*> sources; ///< by Embree's geometry number: what it was made of
+    std::atomic<std::ptrdiff_t> bytes{0};
+    std::size_t triangles = 0;
+    std::string version;
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+};
+
+Geometry::Implementation::Implementation(const Scene& scene_in) : surfaces(surfaces_of(scene_in)) {
+    device = rtcNewDevice(nullptr);
+    check("start");
+    rtcSetDeviceMemoryMonitorFunction(
+        device,
+        [](void* self, ssize_t change, bool) {
+            static_cast<Implementation*>(self)->bytes += change;
+            return true;
+        },
+        this);
+    version = fmt::format("Embree {}.{}.{}",
+                          rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION_MAJOR),
+                          rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION_MINOR),
+                          rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION_PATCH));
+    scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    attach(surfaces.spheres);
+    attach(surfaces.rectangles);
+    attach(surfaces.disks);
+    for (const OwnedMesh& mesh : surfaces.meshes)
+        attach(mesh);
+    rtcCommitScene(scene);
+    check("build its acceleration structure");
+}
+
+Geometry::Implementation::~Implementation() {
+    if (scene != nullptr)
+        rtcReleaseScene(scene);
+    if (device != nullptr)
+        rtcReleaseDevice(device);
+}
+
+void Geometry::Implementation::check(const char* doing) const {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error != RTC_ERROR_NONE || device == nullptr)
+        throw_runtime_error(
+            fmt::format("Embree cannot {} (error {})", doing, static_cast<int>(error)),
+            error == RTC_ERROR_OUT_OF_MEMORY ? "it is out of memory"
+                                             : "check the installation of Embree");
+}
+
+template <typename Primitive>
+void Geometry::Implementation::attach(const OwnedPrimitives<Primitive>& owned) {
+    sources.push_back(&owned);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned int>(owned.primitives.size()));
+    rtcSetGeometryUserData(geometry, const_cast<OwnedPrimitives<Primitive>*>(&owned));
+    rtcSetGeometryBoundsFunction(
+        geometry, [](const RTCBoundsFunctionArguments* a) { bounds_callback<Primitive>(a); },
+        nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersect_callback<Primitive>);
+    rtcSetGeometryOccludedFunction(geometry, occluded_callback<Primitive>);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned int>(sources.size() - 1));
+    rtcReleaseGeometry(geometry);
+}
+
+void Geometry::Implementation::attach(const OwnedMesh& owned) {
+    sources.push_back(&owned);
+    const std::size_t vertices = owned.mesh.positions.size() / 3;
+    const std::size_t count = owned.mesh.indices.size() / 3;
+    triangles += count;
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    // Embree reads 16 bytes at the last vertex, so it keeps its own padded copies.
+    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                              RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices);
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                            3 * sizeof(std::uint32_t), count);
+    check("take memory for a mesh");
+    std::copy(owned.mesh.positions.begin(), owned.mesh.positions.end(),
+              static_cast<float*>(positions));
+    std::copy(owned.mesh.indices.begin(), owned.mesh.indices.end(),
+              static_cast<std::uint32_t*>(indices));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned int>(sources.size() - 1));
+    rtcReleaseGeometry(geometry);
+}
+
+template <typename Primitive>
+HitRecord Geometry::Implementation::describe(const OwnedPrimitives<Primitive>& owned,
+                                             unsigned int index, Ray ray, double t) const {
+    const Primitive& primitive = owned.primitives[index];
+    // Embree keeps t in single precision; the primitive knows it better.
+    const double exact = primitive.intersect(ray);
+    return record_of(primitive.describe(ray, exact >= 0.0 ? exact : t), owned.owners[index]);
+}
+
+HitRecord Geometry::Implementation::describe(const RayRecord& record,
+                                             const RTCRayHit& found) const {
+    const unsigned int index = found.hit.primID;
+    const Ray ray = ray_of(record);
+    const double t = found.ray.tfar;
+    const void* source = sources[found.hit.geomID];
+    if (source == &surfaces.spheres)
+        return describe(surfaces.spheres, index, ray, t);
+    if (source == &surfaces.rectangles)
+        return describe(surfaces.rectangles, index, ray, t);
+    if (source == &surfaces.disks)
+        return describe(surfaces.disks, index, ray, t);
+    const auto& owned = *static_cast<const OwnedMesh*>(source);
+    const TrianglePrimitive triangle = triangle_of(owned.mesh, index);
+    const auto barycentric = triangle.barycentric(ray, {found.hit.u, found.hit.v});
+    SurfaceHit hit = triangle.describe(ray, barycentric);
+    interpolate_vertex_data(owned.mesh, index, barycentric, hit);
+    return record_of(hit, owned.owner);
+}
+
+Geometry::Geometry(const Scene& scene) : implementation_(std::make_unique<Implementation>(scene)) {}
+Geometry::~Geometry() = default;
+
+void Geometry::intersect(std::span<const RayRecord> rays, std::span<HitRecord> hits, bool coherent,
+                         int threads) const {
+    for_each_ray(rays.size(), threads, [&](std::size_t i) {
+        hits[i] = no_hit();
+        if (!is_traceable(rays[i]))
+            return;
+        RTCRayHit found{};
+        found.ray = embree_ray(rays[i]);
+        found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        embree_intersect(implementation_->scene, found, coherent);
+        if (found.hit.geomID != RTC_INVALID_GEOMETRY_ID)
+            hits[i] = implementation_->describe(rays[i], found);
+    });
+}
+
+void Geometry::occlude(std::span<RayRecord> rays, int threads) const {
+    for_each_ray(rays.size(), threads, [&](std::size_t i) {
+        if (!is_traceable(rays[i])) {
+            rays[i].t_far = -1.0f;
+            return;
+        }
+        RTCRay ray = embree_ray(rays[i]);
+        embree_occluded(implementation_->scene, ray);
+        if (ray.tfar < 0.0f)
+            rays[i].t_far = -1.0f;
+    });
+}
+
+std::size_t Geometry::triangle_count() const {
+    return implementation_->triangles;
+}
+
+std::size_t Geometry::memory_bytes() const {
+    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(implementation_->bytes, 0));
+}
+
+const char* Geometry::library_version() const {
+    return implementation_->version.c_str();
+}
+
+} // namespace reradiant

@@ -1,0 +1,220 @@
+#include "host/geometry/primitives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace reradiant {
+
+using namespace kernels;
+
+namespace {
+
+constexpr double PI = 3.14159265358979323846;
+/// Half a unit in the last place of single precision, relative.
+constexpr double FLOAT_ROUNDING = 0x1p-24;
+constexpr double SMALLEST_FLOAT = std::numeric_limits<float>::denorm_min();
+
+double largest_component(const Vec3& v) {
+    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+}
+
+/// Rounding of the position to single precision, and half as much again because moving it along
+/// the normal is rounded in the next binade at worst.
+double rounding_error(const Vec3& position) {
+    return 1.5 * FLOAT_ROUNDING * largest_component(position) + SMALLEST_FLOAT;
+}
+
+Vec3 any_perpendicular(const Vec3& n) {
+    const Vec3 axis = std::fabs(n.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    return vec3_normalise(vec3_cross(n, axis));
+}
+
+/// Distance to a plane through `point`, -1 when parallel or out of range.
+double intersect_plane(const Ray& ray, const Vec3& point, const Vec3& normal) {
+    const double t =
+        vec3_dot(normal, vec3_sub(point, ray.origin)) / vec3_dot(normal, ray.direction);
+    return t > ray.t_near && t < ray.t_far ? t : -1.0;
+}
+
+double azimuth_share(double y, double x) {
+    const double share = std::atan2(y, x) / (2.0 * PI);
+    return share < 0.0 ? share + 1.0 : share;
+}
+
+Vec3 scaled_to_unit(const Vec3& v) {
+    return vec3_normalise(vec3_scale(v, 1.0 / largest_component(v)));
+}
+
+SurfaceHit flat_hit(const Vec3& position, const Vec3& normal, double u, double v, double t) {
+    return {position, normal, normal, u, v, t, rounding_error(position)};
+}
+
+} // namespace
+
+double SpherePrimitive::intersect(const Ray& ray) const {
+    const Vec3 from_center = vec3_sub(ray.origin, center);
+    const double a = vec3_dot(ray.direction, ray.direction);
+    const double b = vec3_dot(from_center, ray.direction);
+    // The discriminant from the ray's closest approach, and c as a product: neither cancels for
+    // a ray far from a small sphere or near the surface of a huge one.
+    const Vec3 closest = vec3_sub(from_center, vec3_scale(ray.direction, b / a));
+    const double discriminant = a * (square(radius) - vec3_dot(closest, closest));
+    if (!(discriminant >= 0.0))
+        return -1.0;
+    const double distance = std::sqrt(vec3_dot(from_center, from_center));
+    const double c = (distance - radius) * (distance + radius);
+    const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+    const double first = q == 0.0 ? 0.0 : c / q, second = q / a;
+    for (const double t : {std::min(first, second), std::max(first, second)})
+        if (t > ray.t_near && t < ray.t_far)
+            return t;
+    return -1.0;
+}
+
+SurfaceHit SpherePrimitive::describe(const Ray& ray, double t) const {
+    const Vec3 normal = vec3_normalise(vec3_sub(ray.at(t), center));
+    const Vec3 position = vec3_add(center, vec3_scale(normal, radius));
+    return flat_hit(position, normal, azimuth_share(normal.y, normal.x),
+                    std::acos(std::clamp(normal.z, -1.0, 1.0)) / PI, t);
+}
+
+Box SpherePrimitive::bounds() const {
+    const Vec3 r = vec3(radius, radius, radius);
+    return {vec3_sub(center, r), vec3_add(center, r)};
+}
+
+RectanglePrimitive::RectanglePrimitive(const Vector3& center_in, const Vector3& edge_u_in,
+                                       const Vector3& edge_v_in)
+    : center(to_vec3(center_in)), edge_u(to_vec3(edge_u_in)), edge_v(to_vec3(edge_v_in)) {
+    normal = scaled_to_unit(vec3_cross(scaled_to_unit(edge_u), scaled_to_unit(edge_v)));
+    const Vec3 across_u = vec3_cross(edge_v, normal), across_v = vec3_cross(normal, edge_u);
+    dual_u = vec3_scale(across_u, 1.0 / vec3_dot(across_u, edge_u));
+    dual_v = vec3_scale(across_v, 1.0 / vec3_dot(across_v, edge_v));
+}
+
+double RectanglePrimitive::intersect(const Ray& ray) const {
+    const double t = intersect_plane(ray, center, normal);
+    if (t < 0.0)
+        return -1.0;
+    const Vec3 p = vec3_sub(ray.at(t), center);
+    // Rounding must not open a gap between rectangles that share an edge.
+    constexpr double HALF = 0.5 + 1e-12;
+    return std::fabs(vec3_dot(p, dual_u)) <= HALF && std::fabs(vec3_dot(p, dual_v)) <= HALF ? t
+                                                                                            : -1.0;
+}
+
+SurfaceHit RectanglePrimitive::describe(const Ray& ray, double t) const {
+    const Vec3 p = vec3_sub(ray.at(t), center);
+    const double u = std::clamp(vec3_dot(p, dual_u), -0.5, 0.5);
+    const double v = std::clamp(vec3_dot(p, dual_v), -0.5, 0.5);
+    const Vec3 offset = vec3_add(vec3_scale(edge_u, u), vec3_scale(edge_v, v));
+    return flat_hit(vec3_add(center, offset), normal, u + 0.5, v + 0.5, t);
+}
+
+Box RectanglePrimitive::bounds() const {
+    const auto reach = [](double u, double v) { return 0.5 * (std::fabs(u) + std::fabs(v)); };
+    const Vec3 r =
+        vec3(reach(edge_u.x, edge_v.x), reach(edge_u.y, edge_v.y), reach(edge_u.z, edge_v.z));
+    return {vec3_sub(center, r), vec3_add(center, r)};
+}
+
+DiskPrimitive::DiskPrimitive(const Vector3& center_in, const Vector3& normal_in, double radius_in)
+    : center(to_vec3(center_in)), normal(scaled_to_unit(to_vec3(normal_in))),
+      tangent(any_perpendicular(normal)), radius(radius_in) {}
+
+double DiskPrimitive::intersect(const Ray& ray) const {
+    const double t = intersect_plane(ray, center, normal);
+    if (t < 0.0)
+        return -1.0;
+    const Vec3 p = vec3_sub(ray.at(t), center);
+    return vec3_dot(p, p) <= square(radius) ? t : -1.0;
+}
+
+SurfaceHit DiskPrimitive::describe(const Ray& ray, double t) const {
+    const Vec3 p = vec3_sub(ray.at(t), center);
+    const Vec3 in_plane = vec3_sub(p, vec3_scale(normal, vec3_dot(p, normal)));
+    const double x = vec3_dot(in_plane, tangent);
+    const double y = vec3_dot(in_plane, vec3_cross(normal, tangent));
+    return flat_hit(vec3_add(center, in_plane), normal, std::min(std::hypot(x, y) / radius, 1.0),
+                    azimuth_share(y, x), t);
+}
+
+Box DiskPrimitive::bounds() const {
+    const auto reach = [&](double n) { return radius * std::sqrt(std::max(0.0, 1.0 - n * n)); };
+    const Vec3 r = vec3(reach(normal.x), reach(normal.y), reach(normal.z));
+    return {vec3_sub(center, r), vec3_add(center, r)};
+}
+
+std::array<double, 2> TrianglePrimitive::barycentric(const Ray& ray,
+                                                     std::array<double, 2> fallback) const {
+    const Vec3 e1 = vec3_sub(corners[1], corners[0]), e2 = vec3_sub(corners[2], corners[0]);
+    const Vec3 p = vec3_cross(ray.direction, e2);
+    const double determinant = vec3_dot(e1, p);
+    const Vec3 from_corner = vec3_sub(ray.origin, corners[0]);
+    double u = vec3_dot(from_corner, p) / determinant;
+    double v = vec3_dot(ray.direction, vec3_cross(from_corner, e1)) / determinant;
+    if (!std::isfinite(u) || !std::isfinite(v)) {
+        u = fallback[0];
+        v = fallback[1];
+    }
+    u = std::clamp(u, 0.0, 1.0);
+    return {u, std::clamp(v, 0.0, 1.0 - u)};
+}
+
+SurfaceHit TrianglePrimitive::describe(const Ray& ray, std::array<double, 2> barycentric) const {
+    const Vec3 e1 = vec3_sub(corners[1], corners[0]), e2 = vec3_sub(corners[2], corners[0]);
+    const Vec3 offset = vec3_add(vec3_scale(e1, barycentric[0]), vec3_scale(e2, barycentric[1]));
+    const Vec3 position = vec3_add(corners[0], offset);
+    const Vec3 normal = scaled_to_unit(vec3_cross(scaled_to_unit(e1), scaled_to_unit(e2)));
+    SurfaceHit hit = flat_hit(position, normal, barycentric[0], barycentric[1], 0.0);
+    hit.distance = vec3_dot(vec3_sub(position, ray.origin), ray.direction) /
+                   vec3_dot(ray.direction, ray.direction);
+    // Embree tests the next ray against this triangle in single precision, with corners relative
+    // to the origin: an error of a few roundings of the largest such coordinate.
+    double reach = 0.0;
+    for (const Vec3& corner : corners)
+        reach = std::max(reach, largest_component(vec3_sub(corner, position)));
+    constexpr double INTERSECTION_ROUNDINGS = 6.0;
+    hit.position_error += INTERSECTION_ROUNDINGS * FLOAT_ROUNDING * reach;
+    return hit;
+}
+
+TrianglePrimitive triangle_of(const MeshShape& mesh, std::uint32_t triangle) {
+    TrianglePrimitive primitive;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const float* p =
+            mesh.positions.data() + 3 * std::size_t{mesh.indices[3 * std::size_t{triangle} + k]};
+        primitive.corners[k] = vec3(p[0], p[1], p[2]);
+    }
+    return primitive;
+}
+
+void interpolate_vertex_data(const MeshShape& mesh, std::uint32_t triangle,
+                             std::array<double, 2> barycentric, SurfaceHit& hit) {
+    const std::array<double, 3> weights{1.0 - barycentric[0] - barycentric[1], barycentric[0],
+                                        barycentric[1]};
+    const auto sum = [&](const std::vector<float>& values, std::size_t width, std::size_t axis) {
+        double total = 0.0;
+        for (std::size_t k = 0; k < 3; ++k)
+            total += weights[k] *
+                     static_cast<double>(
+                         values[width * mesh.indices[3 * std::size_t{triangle} + k] + axis]);
+        return total;
+    };
+    if (!mesh.texture_coordinates.empty()) {
+        hit.u = sum(mesh.texture_coordinates, 2, 0);
+        hit.v = sum(mesh.texture_coordinates, 2, 1);
+    }
+    if (mesh.normals.empty())
+        return;
+    const Vec3 shading =
+        vec3(sum(mesh.normals, 3, 0), sum(mesh.normals, 3, 1), sum(mesh.normals, 3, 2));
+    if (!(largest_component(shading) > 1e-12))
+        return;
+    hit.shading = scaled_to_unit(shading);
+    if (vec3_dot(hit.shading, hit.normal) < 0.0)
+        hit.shading = vec3_scale(hit.shading, -1.0);
+}
+
+} // namespace reradiant

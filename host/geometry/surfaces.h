@@ -1,0 +1,46 @@
+#pragma once
+
+#include "host/geometry/primitives.h"
+#include "host/scene/scene.h"
+#include "kernels/shared.h"
+
+#include <vector>
+
+namespace reradiant {
+
+/// Whom a surface belongs to.
+struct Owner {
+    std::uint32_t shape = NO_INDEX, material = NO_INDEX, light = NO_INDEX;
+};
+
+/// Primitives of one kind with their owners.
+template <typename Primitive>
+struct OwnedPrimitives {
+    std::vector<Primitive> primitives;
+    std::vector<Owner> owners;
+
+    void add(const Primitive& primitive, const Owner& owner) {
+        primitives.push_back(primitive);
+        owners.push_back(owner);
+    }
+};
+
+/// A mesh of the scene, copied so that a Geometry outlives its Scene.
+struct OwnedMesh {
+    MeshShape mesh;
+    Owner owner;
+};
+
+/// Every surface of a scene, checked.
+struct Surfaces {
+    OwnedPrimitives<SpherePrimitive> spheres;
+    OwnedPrimitives<RectanglePrimitive> rectangles;
+    OwnedPrimitives<DiskPrimitive> disks;
+    std::vector<OwnedMesh> meshes;
+};
+
+/// Throws an input Error that names shape (or light) and primitive for what Embree would drop or
+/// read out of bounds without a word (CASES 7).
+Surfaces surfaces_of(const Scene& scene);
+
+} // namespace reradiant
