@@ -9,7 +9,6 @@ namespace reradiant {
 std::filesystem::path data_directory();
 
 inline std::filesystem::path spectra_directory() { return data_directory() / "spectra"; }
-inline std::filesystem::path kernels_directory() { return data_directory() / "kernels"; }
 
 /// $RERADIANT_CACHE, else $XDG_CACHE_HOME/reradiant, else ~/.cache/reradiant. Not created here.
 std::filesystem::path cache_directory();

@@ -55,7 +55,7 @@ bool load_binary(const Device& device, const std::string& binary, cl::Program& p
 
 [[noreturn]] void report_failed_build(const Device& device, const cl::Program& program,
                                       const std::string& file, const std::string& source) {
-    const fs::path dump = cache_directory() / ("failed-" + file);
+    const fs::path dump = cache_directory() / ("failed-" + fs::path(file).filename().string());
     std::string where = "the whole source is in " + dump.string();
     try {
         fs::create_directories(dump.parent_path());
@@ -63,8 +63,7 @@ bool load_binary(const Device& device, const std::string& binary, cl::Program& p
     } catch (const std::exception& error) {
         where = fmt::format("its source could not be written: {}", error.what());
     }
-    throw_runtime_error(fmt::format("kernels/{} does not build on '{}':\n{}", file,
-                                    device.info().name,
+    throw_runtime_error(fmt::format("{} does not build on '{}':\n{}", file, device.info().name,
                                     program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle())),
                         where);
 }
@@ -96,7 +95,7 @@ cl::Program compile(const Device& device, const std::string& file, const std::st
 cl::Program build_program(const Device& device, const std::string& file,
                           const KernelDefines& defines, BuildStatistics* statistics) {
     const auto start = std::chrono::steady_clock::now();
-    const std::string source = kernel_source(kernels_directory(), file, defines);
+    const std::string source = kernel_source(data_directory(), file, defines);
     const DeviceInfo& info = device.info();
     const std::string key =
         text_digest(fmt::format("{}\n{}\n{}\n{}\n{}\n{}", source, build_options, info.name,

@@ -47,13 +47,13 @@ void expand(const fs::path& root, const std::string& name, std::set<std::string>
 
 } // namespace
 
-std::string kernel_source(const fs::path& kernel_folder, const std::string& file,
+std::string kernel_source(const fs::path& root, const std::string& file,
                           const KernelDefines& defines) {
     std::string source;
     for (const auto& [name, value] : defines)
         source += fmt::format("#define {} {}\n", name, value);
     std::set<std::string> seen;
-    expand(kernel_folder.parent_path(), "kernels/" + file, seen, source);
+    expand(root, file, seen, source);
     return source;
 }
 

@@ -10,10 +10,10 @@ namespace reradiant {
 /// Names and values that specialise a program, passed as #define.
 using KernelDefines = std::vector<std::pair<std::string, long>>;
 
-/// One kernel file with its headers (`#include "kernels/..."`) put in place, each once, and #line
-/// directives so that the compiler's messages name the real files. Run-time Error when a file
-/// is missing.
-std::string kernel_source(const std::filesystem::path& kernel_folder, const std::string& file,
+/// A kernel file ("kernels/gather.cl", relative to `root`) with its headers (`#include
+/// "kernels/..."`) put in place, each once, and #line directives so that the compiler's messages
+/// name the real files. Run-time Error when a file is missing.
+std::string kernel_source(const std::filesystem::path& root, const std::string& file,
                           const KernelDefines& defines);
 
 /// 64 bit FNV-1a of a text, 16 hex digits.

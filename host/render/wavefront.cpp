@@ -70,10 +70,10 @@ void Wavefront::build_kernels(BuildStatistics& build) {
     features.scatter = film_layout_.scatter;
     features.film_chunks = film_layout_.lanes / WIDTH;
     const KernelDefines defines = features.defines();
-    generate_ = {build_program(device_, "generate.cl", defines, &build), "generate", scalar_group};
-    shade_ = {build_program(device_, "shade.cl", defines, &build), "shade", scalar_group};
-    gather_ = {build_program(device_, "gather.cl", defines, &build), "gather", vector_group};
-    film_ = {build_program(device_, "film.cl", defines, &build), "film", vector_group};
+    generate_ = {build_program(device_, "kernels/generate.cl", defines, &build), "generate", scalar_group};
+    shade_ = {build_program(device_, "kernels/shade.cl", defines, &build), "shade", scalar_group};
+    gather_ = {build_program(device_, "kernels/gather.cl", defines, &build), "gather", vector_group};
+    film_ = {build_program(device_, "kernels/film.cl", defines, &build), "film", vector_group};
 }
 
 void Wavefront::render_pass(std::uint32_t first_sample, std::uint32_t samples) {

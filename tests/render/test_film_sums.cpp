@@ -1,0 +1,76 @@
+#include "tests/render/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace reradiant {
+namespace {
+
+using namespace test;
+
+Scene noisy_scene() {
+    Scene scene = sphere_scene(material({layer(1.5, 0.3)}, 0.6), 24, 24);
+    scene.lights = {RectangleLight{{2, 4, 3}, {1, 0, 0}, {0, 0, 1}, Spectrum::constant(5.0)},
+                    environment(Spectrum::constant(0.2))};
+    return scene;
+}
+
+RenderResult rendered(std::uint32_t samples, std::uint32_t seed, bool variance = false) {
+    RenderOptions options;
+    options.samples = samples;
+    options.seed = seed;
+    options.bands = grid_from_range(400, 700, 50);
+    options.band_variance = variance;
+    return render(noisy_scene(), device(), options);
+}
+
+TEST(FilmSums, EstimatedRelmseIsThatAgainstAReference) {
+    const RenderResult reference = rendered(4096, 1000);
+    double estimated = 0.0, measured = 0.0;
+    for (std::uint32_t seed = 0; seed < 16; ++seed) {
+        const RenderResult result = rendered(16, seed);
+        estimated += result.relmse / 16.0;
+        measured += compare_images(result.image, reference.image).relmse / 16.0;
+    }
+    // 16 images of 576 pixels: a few percent of noise; the reference adds 1/256 of the error.
+    EXPECT_NEAR(estimated, measured, 0.1 * measured);
+}
+
+TEST(FilmSums, ErrorFallsAsTheInverseSquareRootOfSamples) {
+    const RenderResult reference = rendered(16384, 1000);
+    double previous = 0.0;
+    for (const std::uint32_t samples : {16u, 64u, 256u}) {
+        double error = 0.0;
+        for (std::uint32_t seed = 0; seed < 8; ++seed)
+            error += compare_images(rendered(samples, seed).image, reference.image).rmse / 8.0;
+        if (previous > 0.0) {
+            EXPECT_NEAR(std::log(error / previous) / std::log(4.0), -0.5, 0.05);
+        }
+        previous = error;
+    }
+}
+
+TEST(FilmSums, VariancePerBandPredictsTheSpreadBetweenRenders) {
+    const RenderResult one = rendered(64, 0, true);
+    ASSERT_EQ(one.image.variance_bands.size(), one.image.values.size());
+    double predicted = 0.0, spread = 0.0;
+    for (const float v : one.image.variance_bands)
+        predicted += static_cast<double>(v);
+    const RenderResult other = rendered(64, 1, true);
+    for (std::size_t i = 0; i < one.image.values.size(); ++i) {
+        const double d =
+            static_cast<double>(one.image.values[i]) - static_cast<double>(other.image.values[i]);
+        spread += 0.5 * d * d;
+    }
+    EXPECT_NEAR(spread, predicted, 0.15 * predicted);
+}
+
+TEST(FilmSums, MemoryLimitRefusesBeforeWorkStarts) {
+    RenderOptions options;
+    options.memory_limit_bytes = 1000;
+    EXPECT_THROW(render(noisy_scene(), device(), options), Error);
+}
+
+} // namespace
+} // namespace reradiant
