@@ -13,6 +13,20 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
+Matrix below_diagonal(const Matrix& square) {
+    return square.triangularView<Eigen::StrictlyLower>();
+}
+
+/// Entries that a step takes below zero stop at zero and are no longer free.
+void pin(const Matrix& factor, const Matrix& step, Matrix& free, Matrix& pinned) {
+    for (Eigen::Index j = 0; j < factor.size(); ++j) {
+        if (free.data()[j] > 0.0 && factor.data()[j] + step.data()[j] < 0.0) {
+            free.data()[j] = 0.0;
+            pinned.data()[j] = -factor.data()[j];
+        }
+    }
+}
+
 /// Makes both columns of each term equally long, which conditions the joint problem best.
 void balance_terms(Matrix& emission, Matrix& excitation) {
     for (Eigen::Index k = 0; k < emission.cols(); ++k) {
@@ -35,11 +49,38 @@ Matrix free_entries(const Matrix& factor, const Matrix& gradient) {
 class DampedStep {
 public:
     DampedStep(const Matrix& emission, const Matrix& excitation, const Matrix& residual)
-        : e_(emission), x_(excitation), n_(emission.rows()), rank_(emission.cols()) {
+        : e_(emission), x_(excitation), n_(emission.rows()), rank_(emission.cols()),
+          residual_(residual) {
         gradient_e_ = residual * x_;
         gradient_x_ = residual.transpose() * e_;
         free_e_ = free_entries(e_, gradient_e_);
         free_x_ = free_entries(x_, gradient_x_);
+    }
+
+    /// Step to the bounded minimum of the damped quadratic model, nearly: entries that would
+    /// turn negative are set to zero and the others solved again, a few times.
+    void solve_bounded(double damping, Matrix& step_e, Matrix& step_x) {
+        constexpr int rounds = 5;
+        const Matrix free_e = free_e_, free_x = free_x_;
+        const Matrix gradient_e = gradient_e_, gradient_x = gradient_x_;
+        Matrix pinned_e = Matrix::Zero(n_, rank_), pinned_x = pinned_e;
+        for (int round = 0; round < rounds; ++round) {
+            solve(damping, step_e, step_x);
+            step_e = step_e.cwiseProduct(free_e_) + pinned_e;
+            step_x = step_x.cwiseProduct(free_x_) + pinned_x;
+            if (((e_ + step_e).array() >= 0.0).all() && ((x_ + step_x).array() >= 0.0).all())
+                break;
+            pin(e_, step_e, free_e_, pinned_e);
+            pin(x_, step_x, free_x_, pinned_x);
+            const Matrix moved =
+                residual_ + below_diagonal(pinned_e * x_.transpose() + e_ * pinned_x.transpose());
+            gradient_e_ = moved * x_;
+            gradient_x_ = moved.transpose() * e_;
+        }
+        free_e_ = free_e;
+        free_x_ = free_x;
+        gradient_e_ = gradient_e;
+        gradient_x_ = gradient_x;
     }
 
     /// Largest entry of the gradient among free entries.
@@ -116,14 +157,14 @@ private:
 
     const Matrix &e_, &x_;
     Eigen::Index n_, rank_;
+    const Matrix& residual_;
     Matrix gradient_e_, gradient_x_, free_e_, free_x_;
 };
 
 } // namespace
 
 Matrix MaskedLeastSquares::residual(const Matrix& emission, const Matrix& excitation) const {
-    const Matrix difference = emission * excitation.transpose() - target;
-    return difference.triangularView<Eigen::StrictlyLower>();
+    return below_diagonal(emission * excitation.transpose() - target);
 }
 
 double MaskedLeastSquares::cost(const Matrix& emission, const Matrix& excitation) const {
@@ -159,20 +200,20 @@ void MaskedLeastSquares::descend(Matrix& emission, Matrix& excitation, int sweep
 void MaskedLeastSquares::polish(Matrix& emission, Matrix& excitation, int most_steps) const {
     constexpr int stall_window = 12;
     constexpr double stall_ratio = 0.999, exact = 1e-28;
-    const double whole = Matrix(target.triangularView<Eigen::StrictlyLower>()).squaredNorm();
+    const double whole = below_diagonal(target).squaredNorm();
     balance_terms(emission, excitation);
     Matrix rest = residual(emission, excitation);
     double cost_now = rest.squaredNorm(), cost_before = cost_now;
     double damping = 1e-2 * std::max(emission.squaredNorm(), excitation.squaredNorm()) /
                      static_cast<double>(emission.rows() * emission.cols());
     for (int step = 0; step < most_steps && cost_now > exact * whole && damping < 1e12; ++step) {
-        const DampedStep system(emission, excitation, rest);
+        DampedStep system(emission, excitation, rest);
         if (!(system.gradient_size() > 0.0))
             return;
         Matrix step_e, step_x;
         bool improved = false;
         for (int attempt = 0; attempt < 12 && !improved; ++attempt) {
-            system.solve(damping, step_e, step_x);
+            system.solve_bounded(damping, step_e, step_x);
             const Matrix e = (emission + step_e).cwiseMax(0.0);
             const Matrix x = (excitation + step_x).cwiseMax(0.0);
             const Matrix trial = residual(e, x);

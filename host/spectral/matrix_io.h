@@ -18,6 +18,21 @@ ReradiationMatrix read_reradiation(const std::filesystem::path& file);
 /// the same double).
 void write_reradiation(const std::filesystem::path& file, const ReradiationMatrix& matrix);
 
+/// How a CSV lays a matrix out (INTERFACE, "Re-radiation CSV").
+struct MatrixCsvForm {
+    MatrixQuantity quantity = MatrixQuantity::PerBand;
+    bool rows_are_emission = true;
+};
+/// The wide CSV in a chosen form; atomic.
+void write_reradiation_csv(const std::filesystem::path& file, const ReradiationMatrix& matrix,
+                           const MatrixCsvForm& form);
+
+/// True when a file holds a re-radiation matrix rather than a spectrum: .bfc, .exr, or a .csv
+/// whose first lines say so. Input Error when a .csv cannot be read.
+bool holds_reradiation(const std::filesystem::path& file);
+/// Ending of a file name in small letters, with its dot.
+std::string lower_case_ending(const std::filesystem::path& file);
+
 /// Reads a spectrum from .spd (two columns) or .csv (nm,value; '#' comments, optional header).
 Spectrum read_spectrum(const std::filesystem::path& file);
 void write_spectrum(const std::filesystem::path& file, const std::vector<double>& wavelengths_nm,

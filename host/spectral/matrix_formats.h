@@ -1,0 +1,37 @@
+#pragma once
+
+#include "host/error.h"
+#include "host/spectral/reradiation.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace reradiant {
+
+/// A wavelength of an axis, with its place in the file.
+struct PlacedWavelength {
+    double nm = 0.0;
+    SourcePosition position;
+};
+
+/// Grid of an axis as read; input Error at the first wavelength that does not ascend in equal
+/// steps. `step_of_single_nm` is the width of an axis of one band.
+WavelengthGrid axis_grid(const std::vector<PlacedWavelength>& axis, const char* axis_name,
+                         double step_of_single_nm);
+
+/// Input Error unless a matrix of this size is small enough to hold (2^22 entries).
+void require_matrix_size(const SourcePosition& position, std::size_t rows, std::size_t columns);
+
+/// Multiplies every entry off the diagonal: the diagonal is a reflectance in every form.
+void scale_off_diagonal(ReradiationMatrix& matrix, double factor);
+
+/// Input Error at the file for a model with an entry below its excitation and no leave for it.
+void refuse_undeclared_anti_stokes(const ReradiationMatrix& matrix, const SourcePosition& position);
+
+ReradiationMatrix read_matrix_csv(const std::filesystem::path& file);
+ReradiationMatrix read_matrix_bfc(const std::filesystem::path& file);
+ReradiationMatrix read_matrix_exr(const std::filesystem::path& file);
+void write_matrix_bfc(const std::filesystem::path& file, const ReradiationMatrix& matrix);
+void write_matrix_exr(const std::filesystem::path& file, const ReradiationMatrix& matrix);
+
+} // namespace reradiant

@@ -1,0 +1,138 @@
+#include "host/spectral/matrix_io.h"
+
+#include "host/spectral/matrix_formats.h"
+#include "host/spectral/text_reader.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace reradiant {
+
+namespace {
+
+constexpr std::size_t most_entries = std::size_t{1} << 22;
+
+[[noreturn]] void refuse_ending(const std::filesystem::path& file) {
+    throw_input_error(
+        {file.string()},
+        fmt::format("the ending '{}' is not of a re-radiation matrix", file.extension().string()),
+        "use .csv, .bfc or .exr");
+}
+
+/// The entry that breaks equal steps, seen from the first step.
+std::size_t first_uneven(const std::vector<PlacedWavelength>& axis) {
+    const double step_nm = axis[1].nm - axis[0].nm;
+    for (std::size_t k = 2; k < axis.size(); ++k)
+        if (std::abs(axis[k].nm - axis[0].nm - static_cast<double>(k) * step_nm) > 1e-6 * step_nm)
+            return k;
+    return axis.size() - 1;
+}
+
+} // namespace
+
+std::string lower_case_ending(const std::filesystem::path& file) {
+    std::string ending = file.extension().string();
+    for (char& letter : ending)
+        if (letter >= 'A' && letter <= 'Z')
+            letter = static_cast<char>(letter - 'A' + 'a');
+    return ending;
+}
+
+WavelengthGrid axis_grid(const std::vector<PlacedWavelength>& axis, const char* axis_name,
+                         double step_of_single_nm) {
+    std::vector<double> centres_nm;
+    for (const PlacedWavelength& wavelength : axis) {
+        if (!centres_nm.empty() && !(wavelength.nm > centres_nm.back()))
+            throw_input_error(
+                wavelength.position,
+                fmt::format("{} wavelength {} nm does not ascend", axis_name, wavelength.nm),
+                "sort the wavelengths and give each once");
+        centres_nm.push_back(wavelength.nm);
+    }
+    try {
+        return grid_from_centres(centres_nm, step_of_single_nm);
+    } catch (const std::invalid_argument& error) {
+        const std::size_t at = axis.size() > 2 ? first_uneven(axis) : 0;
+        throw_input_error(axis.empty() ? SourcePosition{} : axis[at].position,
+                          fmt::format("{} wavelengths: {}", axis_name, error.what()),
+                          "bands must be equally spaced");
+    }
+}
+
+void require_matrix_size(const SourcePosition& position, std::size_t rows, std::size_t columns) {
+    if (columns > 0 && rows > most_entries / columns)
+        throw_input_error(position, fmt::format("{} x {} entries are too many", rows, columns),
+                          fmt::format("at most {} are read", most_entries));
+}
+
+void scale_off_diagonal(ReradiationMatrix& matrix, double factor) {
+    for (int i = 0; i < matrix.excitation.count; ++i) {
+        const int diagonal = diagonal_row(matrix, i);
+        for (int o = 0; o < matrix.emission.count; ++o)
+            if (o != diagonal)
+                matrix.values(o, i) *= factor;
+    }
+}
+
+void refuse_undeclared_anti_stokes(const ReradiationMatrix& matrix,
+                                   const SourcePosition& position) {
+    if (matrix.kind == MatrixKind::Measured || matrix.anti_stokes_allowed)
+        return;
+    for (int i = 0; i < matrix.excitation.count; ++i)
+        for (int o = 0; o < matrix.emission.count; ++o)
+            if (matrix.values(o, i) > 0.0 && diagonal_row(matrix, i) != o &&
+                matrix.emission.centre_nm(o) < matrix.excitation.centre_nm(i))
+                throw_input_error(
+                    position,
+                    fmt::format("excitation {} nm, emission {} nm: the value {} is anti-Stokes",
+                                matrix.excitation.centre_nm(i), matrix.emission.centre_nm(o),
+                                matrix.values(o, i)),
+                    "set it to 0, or declare anti-Stokes emission as allowed");
+}
+
+bool holds_reradiation(const std::filesystem::path& file) {
+    const std::string ending = lower_case_ending(file);
+    if (ending == ".bfc" || ending == ".exr")
+        return true;
+    if (ending != ".csv")
+        return false;
+    TextReader reader(file);
+    for (std::string_view line; reader.next_line(line);) {
+        line = trimmed(line);
+        if (line.empty())
+            continue;
+        if (!line.starts_with('#'))
+            return line.starts_with("excitation_nm");
+        line = trimmed(line.substr(1));
+        if (line == "reradiation" || line.starts_with("quantity:") ||
+            line.starts_with("orientation:"))
+            return true;
+    }
+    return false;
+}
+
+ReradiationMatrix read_reradiation(const std::filesystem::path& file) {
+    const std::string ending = lower_case_ending(file);
+    if (ending == ".csv")
+        return read_matrix_csv(file);
+    if (ending == ".bfc")
+        return read_matrix_bfc(file);
+    if (ending == ".exr")
+        return read_matrix_exr(file);
+    refuse_ending(file);
+}
+
+void write_reradiation(const std::filesystem::path& file, const ReradiationMatrix& matrix) {
+    const std::string ending = lower_case_ending(file);
+    if (ending == ".csv")
+        return write_reradiation_csv(file, matrix, {});
+    if (ending == ".bfc")
+        return write_matrix_bfc(file, matrix);
+    if (ending == ".exr")
+        return write_matrix_exr(file, matrix);
+    refuse_ending(file);
+}
+
+} // namespace reradiant

@@ -1,0 +1,32 @@
+#include "host/atomic_file.h"
+#include "host/spectral/matrix_io.h"
+#include "host/spectral/text_reader.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace reradiant {
+
+Spectrum read_spectrum(const std::filesystem::path& file) {
+    NumberTable table = read_number_table(file, 2);
+    return Spectrum::table(std::move(table.columns[0]), std::move(table.columns[1]));
+}
+
+void write_spectrum(const std::filesystem::path& file, const std::vector<double>& wavelengths_nm,
+                    const std::vector<double>& values) {
+    Spectrum::table(wavelengths_nm, values); // refuses what could not be read back
+    const std::string ending = lower_case_ending(file);
+    if (ending != ".csv" && ending != ".spd")
+        throw_input_error({file.string()},
+                          fmt::format("the ending '{}' is not of a spectrum", ending),
+                          "use .csv or .spd");
+    const bool csv = ending == ".csv";
+    std::string text = csv ? "nm,value\n" : "# nm value\n";
+    // fmt prints the shortest text that reads back as the same double.
+    for (std::size_t i = 0; i < values.size(); ++i)
+        text += fmt::format("{}{}{}\n", wavelengths_nm[i], csv ? ',' : ' ', values[i]);
+    write_text_atomically(file, text);
+}
+
+} // namespace reradiant
