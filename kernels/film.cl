@@ -20,8 +20,11 @@ int film_read(__global const float* path, __global const int* bands,
     for (uint c = 0u; c < FILM_CHUNKS; ++c)
         value[c] = (float16)(0.0f);
     for (uint lane = 0u; lane < LANES; ++lane)
-        if (bands[lane] >= 0)
-            ((float*)value)[bands[lane]] += path[lane] * weights[lane];
+        if (bands[lane] >= 0) {
+            ((float*)value)[bands[lane]] += path[lane] * weights[2u * lane];
+            if (weights[2u * lane + 1u] != 0.0f)
+                ((float*)value)[bands[lane] + 1] += path[lane] * weights[2u * lane + 1u];
+        }
     for (uint c = 0u; c < CHUNKS; ++c)
         bad |= film_not_finite(vload16(c, path));
 #else
@@ -44,7 +47,8 @@ float film_luminance(const float16* value, __global const float* y_weights) {
 
 /// sums: [pixel][FILM_ROWS][FILM_LANES]: sum, its compensation, alternating sum (even minus odd
 /// samples), sum of squares. statistics: [pixel][5]: sums of Y and of Y^2, their compensations,
-/// samples refused. bands and weights: [phase][LANES], where a lane goes and with what weight.
+/// samples refused. bands: [phase][LANES], where a lane goes; weights: [phase][LANES][2], its
+/// weight there and in the band above.
 __kernel void film(__global float* sums, __global float* statistics,
                    __global const float* radiance, __global const PathState* paths,
                    __global const int* bands, __global const float* weights,
@@ -60,7 +64,8 @@ __kernel void film(__global float* sums, __global float* statistics,
         const size_t path = (size_t)pixel * samples + s;
         const uint offset = paths[path].phase * LANES;
         float16 value[FILM_CHUNKS];
-        if (!film_read(radiance + path * LANES, bands + offset, weights + offset, value)) {
+        if (!film_read(radiance + path * LANES, bands + offset, weights + 2u * offset,
+                       value)) {
             statistics[4] += 1.0f;
             continue;
         }

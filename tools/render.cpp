@@ -119,6 +119,9 @@ void apply_texts(RenderCommand& command, const CommonOptions& common) {
     command.render.model = parse_model_option(command.model);
     command.render.wavelengths.comb_count = parse_wavelengths_option(command.wavelengths);
     command.render.wavelengths.centred = command.phase == "centre";
+    if (command.render.wavelengths.centred && command.render.wavelengths.comb_count > 0)
+        throw_input_error({}, "--comb-phase centre needs one wavelength a film band",
+                          "leave the count of --wavelengths away");
     command.render.wavelengths.keep_all = command.render.all_features;
     command.render.band_variance = command.variance == "bands";
     if (!command.bands.empty())

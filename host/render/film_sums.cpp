@@ -23,7 +23,8 @@ PixelSums read_pixel(const FilmSums& film, const FilmLayout& layout, std::size_t
     const float* base = film.sums.data() + pixel * layout.floats_per_pixel();
     const auto lanes = static_cast<std::size_t>(layout.lanes);
     for (std::size_t column = 0; column < layout.columns.size(); ++column) {
-        const auto [band, weight] = layout.columns[column];
+        const int band = layout.columns[column].band;
+        const double weight = layout.columns[column].weight;
         if (band < 0)
             continue;
         const auto b = static_cast<std::size_t>(band);
@@ -62,11 +63,12 @@ FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool forc
                 lane < lanes ? plan.deposit(lane, phase) : WavelengthPlan::Deposit{};
             layout.lane_bands.push_back(deposit.band);
             layout.lane_weights.push_back(static_cast<float>(deposit.weight));
+            layout.lane_weights.push_back(static_cast<float>(deposit.next_weight));
         }
     if (layout.scatter) {
         layout.lanes = (plan.film.count + WIDTH - 1) / WIDTH * WIDTH;
         for (int band = 0; band < plan.film.count; ++band)
-            layout.columns.push_back({band, 1.0});
+            layout.columns.push_back({band, 1.0, 0.0});
     } else {
         layout.lanes = padded;
         for (int lane = 0; lane < lanes; ++lane)

@@ -15,8 +15,8 @@ struct FilmLayout {
     bool band_variance = false;
     int lanes = 0;                        ///< padded columns of a row
     std::vector<std::int32_t> lane_bands; ///< [phase][padded lane]: column in scatter mode, or -1
-    std::vector<float> lane_weights;      ///< [phase][padded lane]
-    std::vector<float> y_weights;         ///< [column]
+    std::vector<float> lane_weights; ///< [phase][padded lane][2]: for its column, and for the next
+    std::vector<float> y_weights;    ///< [column]
     /// Column to film band and weight, for reading out.
     std::vector<WavelengthPlan::Deposit> columns;
 

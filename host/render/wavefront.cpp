@@ -70,9 +70,11 @@ void Wavefront::build_kernels(BuildStatistics& build) {
     features.scatter = film_layout_.scatter;
     features.film_chunks = film_layout_.lanes / WIDTH;
     const KernelDefines defines = features.defines();
-    generate_ = {build_program(device_, "kernels/generate.cl", defines, &build), "generate", scalar_group};
+    generate_ = {build_program(device_, "kernels/generate.cl", defines, &build), "generate",
+                 scalar_group};
     shade_ = {build_program(device_, "kernels/shade.cl", defines, &build), "shade", scalar_group};
-    gather_ = {build_program(device_, "kernels/gather.cl", defines, &build), "gather", vector_group};
+    gather_ = {build_program(device_, "kernels/gather.cl", defines, &build), "gather",
+               vector_group};
     film_ = {build_program(device_, "kernels/film.cl", defines, &build), "film", vector_group};
 }
 

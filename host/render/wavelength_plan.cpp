@@ -13,7 +13,7 @@ namespace reradiant {
 namespace {
 
 constexpr double widest_phase_nm = 1.25;
-constexpr int most_phases = 16;
+constexpr int most_phases = 512;
 /// Lines up to this many comb steps wide get lanes of their own.
 constexpr double widest_line_in_steps = 2.0;
 constexpr std::size_t most_line_lanes = 32;
@@ -83,33 +83,47 @@ WavelengthGrid recut(const WavelengthGrid& cells, int count) {
     return {from + 0.5 * step, step, count};
 }
 
-int phases_for(double step_nm) {
+/// Sub-cells fine enough to resolve spectra, and never wider than a film band.
+int phases_for(double step_nm, double film_step_nm) {
+    const double widest = std::min(widest_phase_nm, film_step_nm);
     int phases = 1;
-    while (phases < most_phases && step_nm / phases > widest_phase_nm * (1.0 + 1e-9))
+    while (phases < most_phases && step_nm / phases > widest * (1.0 + 1e-9))
         phases *= 2;
     return phases;
 }
 
-/// Lines of all lamps, cut at cell edges, each piece once.
-std::vector<Lane> line_lanes(const Scene& scene, const WavelengthGrid& comb) {
+/// Edges of cells and of film bands inside an interval, with both of its ends, ascending.
+std::vector<double> cuts(double from, double to, const WavelengthGrid& comb,
+                         const WavelengthGrid& film) {
+    std::vector<double> edges = {from, to};
+    for (const WavelengthGrid* grid : {&comb, &film})
+        for (int c = 0; c <= grid->count; ++c)
+            if (grid->lower_edge_nm(c) > from && grid->lower_edge_nm(c) < to)
+                edges.push_back(grid->lower_edge_nm(c));
+    std::sort(edges.begin(), edges.end());
+    return edges;
+}
+
+/// Lines of all lamps, cut at the edges of cells and bands, each piece once.
+std::vector<Lane> line_lanes(const Scene& scene, const WavelengthGrid& comb,
+                             const WavelengthGrid& film) {
     std::vector<Lane> lanes;
     for (const Light& light : scene.lights)
         for (const SpectralLine& line : light_spectrum(light).lines()) {
             if (line.width_nm > widest_line_in_steps * comb.step_nm)
                 continue;
-            for (int c = 0; c < comb.count; ++c) {
-                const double from =
-                    std::max(comb.lower_edge_nm(c), line.centre_nm - 0.5 * line.width_nm);
-                const double to =
-                    std::min(comb.upper_edge_nm(c), line.centre_nm + 0.5 * line.width_nm);
-                if (to - from <= 1e-9 * line.width_nm)
-                    continue;
-                const Lane lane{c, true, 0.5 * (from + to), to - from};
+            const std::vector<double> edges =
+                cuts(line.centre_nm - 0.5 * line.width_nm, line.centre_nm + 0.5 * line.width_nm,
+                     comb, film);
+            for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+                const double middle = 0.5 * (edges[i] + edges[i + 1]);
+                const double width = edges[i + 1] - edges[i];
+                const int cell = comb.band_of(middle);
                 const bool known = std::any_of(lanes.begin(), lanes.end(), [&](const Lane& l) {
-                    return l.line_nm == lane.line_nm && l.line_width_nm == lane.line_width_nm;
+                    return l.line_nm == middle && l.line_width_nm == width;
                 });
-                if (!known)
-                    lanes.push_back(lane);
+                if (cell >= 0 && width > 1e-9 * line.width_nm && !known)
+                    lanes.push_back({cell, true, middle, width});
             }
         }
     if (lanes.size() > most_line_lanes)
@@ -142,9 +156,22 @@ double WavelengthPlan::wavelength_nm(int lane, int phase) const {
 }
 
 WavelengthPlan::Deposit WavelengthPlan::deposit(int lane, int phase) const {
+    const auto [from, to] = interval_nm(lane, phase);
     const bool is_line = lanes[static_cast<std::size_t>(lane)].is_line;
-    const int band = film.band_of(wavelength_nm(lane, phase));
-    return {band, (is_line ? 1.0 : comb.step_nm) / film.step_nm};
+    const double whole = (is_line ? 1.0 : comb.step_nm) / film.step_nm;
+    // The interval is no wider than a band, so it meets two at most.
+    const double tolerance = 1e-6 * (to - from);
+    const auto first =
+        static_cast<int>(std::floor((from + tolerance - film.lower_edge_nm(0)) / film.step_nm));
+    const double within_first =
+        std::clamp((film.upper_edge_nm(first) - from) / (to - from), 0.0, 1.0);
+    const bool both = within_first < 1.0 - 1e-6;
+    if (first >= 0 && first < film.count)
+        return {first, both ? whole * within_first : whole,
+                both && first + 1 < film.count ? whole * (1.0 - within_first) : 0.0};
+    if (first == -1 && both)
+        return {0, whole * (1.0 - within_first), 0.0};
+    return {};
 }
 
 bool WavelengthPlan::stands_apart(const SpectralLine& line) const {
@@ -157,8 +184,8 @@ bool WavelengthPlan::stands_apart(const SpectralLine& line) const {
 
 bool WavelengthPlan::deposits_are_fixed() const {
     for (int lane = 0; lane < static_cast<int>(lanes.size()); ++lane)
-        for (int phase = 1; phase < phases; ++phase)
-            if (deposit(lane, phase).band != deposit(lane, 0).band)
+        for (int phase = 0; phase < phases; ++phase)
+            if (deposit(lane, phase) != deposit(lane, 0) || deposit(lane, phase).next_weight != 0.0)
                 return false;
     return true;
 }
@@ -181,8 +208,8 @@ WavelengthPlan plan_wavelengths(const Scene& scene, const WavelengthGrid& film,
         plan.comb = trimmed(scene, plan.comb, plan.left_out);
     if (options.comb_count > 0)
         plan.comb = recut(plan.comb, options.comb_count);
-    plan.phases = options.centred ? 1 : phases_for(plan.comb.step_nm);
-    const std::vector<Lane> lines = line_lanes(scene, plan.comb);
+    plan.phases = options.centred ? 1 : phases_for(plan.comb.step_nm, film.step_nm);
+    const std::vector<Lane> lines = line_lanes(scene, plan.comb, film);
     auto line = lines.begin();
     for (int c = 0; c < plan.comb.count; ++c) {
         plan.lanes.push_back({c});

@@ -29,16 +29,18 @@ struct WavelengthPlan {
     double wavelength_nm(int lane, int phase) const;
     /// Sub-cell of a comb lane at a phase (the whole cell when there is one phase), or the line.
     std::array<double, 2> interval_nm(int lane, int phase) const;
-    /// Film band a lane adds to (-1: none) and the weight that turns the lane's radiance into the
-    /// band's mean radiance per nm.
+    /// Film band a lane adds to (-1: none), the weight that turns the lane's radiance into a part
+    /// of the band's mean radiance per nm, and the weight for the band above where the lane's
+    /// interval reaches into it.
     struct Deposit {
         int band = -1;
-        double weight = 0.0;
+        double weight = 0.0, next_weight = 0.0;
+        bool operator==(const Deposit&) const = default;
     };
     Deposit deposit(int lane, int phase) const;
     /// True for a line that has lanes of its own (then it is not on the comb).
     bool stands_apart(const SpectralLine& line) const;
-    /// True when every lane adds to the same band whatever the phase.
+    /// True when every lane adds to one band alone, the same whatever the phase.
     bool deposits_are_fixed() const;
 };
 

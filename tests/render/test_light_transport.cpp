@@ -105,7 +105,8 @@ TEST(LightTransport, WeidlichWilkieMatchesItsDoubleTwin) {
 
 /// Mean radiance of a white Lambertian plane: irradiance over pi.
 double irradiance_of(const Light& light, std::uint32_t samples, double& standard_error) {
-    Scene scene = plane_scene(material({}, 1.0), 1.0, 16, 16);
+    // From the side, so that the light does not stand before the camera.
+    Scene scene = plane_scene(material({}, 1.0), 60.0, 16, 16);
     scene.lights = {light};
     scene.integrator.max_depth = 1;
     RenderOptions options;
