@@ -23,8 +23,10 @@ double estimate_column(const InterfaceOperator& op, int cell, Eigen::VectorXd& c
     std::vector<Departure> departures;
     double lobe = 0.0;
     column.setZero();
-    for (unsigned walk = 0; walk < WalkNumbers::count; ++walk) {
-        WalkNumbers numbers(walk);
+    const LatticeRule rule = lattice_rule(op.interface);
+    const WalkStream stream(rule, static_cast<unsigned>(cell));
+    for (unsigned walk = 0; walk < rule.count; ++walk) {
+        WalkNumbers numbers(stream, walk);
         // uniform in c^2: uniform in flux
         const double cosine = std::sqrt(low2 + (high2 - low2) * numbers.next());
         departures.clear();
@@ -37,8 +39,8 @@ double estimate_column(const InterfaceOperator& op, int cell, Eigen::VectorXd& c
         }
     }
     const double e = own.ior * own.ior * (high2 - low2);
-    column *= e / WalkNumbers::count;
-    return lobe / WalkNumbers::count;
+    column *= e / rule.count;
+    return lobe / rule.count;
 }
 
 /// Every entry estimated from both ends: the variance of the estimate from cell j is proportional
@@ -51,6 +53,48 @@ void symmetrise(Eigen::MatrixXd& matrix, const Eigen::VectorXd& e) {
             matrix(j, i) = s;
         }
     }
+}
+
+/// Scales a non-negative matrix to D S E with the given column and row sums (Sinkhorn 1967); the
+/// two must have the same total. Rows and columns without any entry stay zero.
+void scale_to_marginals(Eigen::MatrixXd& matrix, const Eigen::VectorXd& rows,
+                        const Eigen::VectorXd& columns) {
+    const auto ratio = [](const Eigen::VectorXd& wanted, const Eigen::VectorXd& sums) {
+        return Eigen::VectorXd(
+            (sums.array() > 0.0).select(wanted.array() / sums.array().max(1e-300), 1.0));
+    };
+    for (int step = 0; step < 300; ++step) {
+        matrix = (ratio(rows, matrix.rowwise().sum()).asDiagonal() * matrix).eval();
+        const Eigen::VectorXd change = ratio(columns, matrix.colwise().sum().transpose());
+        matrix = (matrix * change.asDiagonal()).eval();
+        if ((change.array() - 1.0).abs().maxCoeff() < 1e-10) {
+            break;
+        }
+    }
+}
+
+/// Makes every block's sums those of the cells' own estimates: how a cell's flux splits between
+/// reflection and transmission is known far better than where it goes, and the averaging of both
+/// ends' estimates must not blur it. `reflected` and `transmitted`: flux of each cell.
+void restore_splits(InterfaceOperator& op, const Eigen::VectorXd& reflected,
+                    Eigen::VectorXd transmitted) {
+    const Eigen::Index n = op.above.cells(), m = op.below.cells();
+    // the same flux goes both ways: share the difference of the two totals
+    const double down = transmitted.head(n).sum(), up = transmitted.tail(m).sum();
+    if (down > 0.0 && up > 0.0) {
+        transmitted.head(n) *= std::sqrt(up / down);
+        transmitted.tail(m) *= std::sqrt(down / up);
+        Eigen::MatrixXd through = op.exchange.bottomLeftCorner(m, n);
+        scale_to_marginals(through, transmitted.tail(m), transmitted.head(n));
+        op.exchange.bottomLeftCorner(m, n) = through;
+        op.exchange.topRightCorner(n, m) = through.transpose();
+    }
+    Eigen::MatrixXd block = op.exchange.topLeftCorner(n, n);
+    scale_symmetric(block, reflected.head(n));
+    op.exchange.topLeftCorner(n, n) = block;
+    block = op.exchange.bottomRightCorner(m, m);
+    scale_symmetric(block, reflected.tail(m));
+    op.exchange.bottomRightCorner(m, m) = block;
 }
 
 /// Puts back what single scattering loses, reciprocally.
@@ -74,7 +118,8 @@ void scale_symmetric(Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
     Eigen::VectorXd d = Eigen::VectorXd::Ones(target.size());
     for (int step = 0; step < 500; ++step) {
         const Eigen::VectorXd sums = d.cwiseProduct(matrix * d);
-        const Eigen::VectorXd ratio = target.cwiseQuotient(sums);
+        const Eigen::VectorXd ratio =
+            (sums.array() > 0.0).select(target.array() / sums.array().max(1e-300), 1.0);
         d = d.cwiseProduct(ratio.cwiseSqrt());
         if ((ratio.array() - 1.0).abs().maxCoeff() < 1e-14) {
             break;
@@ -107,7 +152,14 @@ InterfaceOperator compute_interface_operator(const RoughInterface& interface) {
     });
     op.first_lobe = lobes.head(op.above.cells());
     const Eigen::VectorXd e = op.etendue();
+    const Eigen::Index n = op.above.cells(), m = op.below.cells();
+    Eigen::VectorXd reflected(n + m), transmitted(n + m);
+    reflected << op.exchange.topLeftCorner(n, n).colwise().sum().transpose(),
+        op.exchange.bottomRightCorner(m, m).colwise().sum().transpose();
+    transmitted << op.exchange.bottomLeftCorner(m, n).colwise().sum().transpose(),
+        op.exchange.topRightCorner(n, m).colwise().sum().transpose();
     symmetrise(op.exchange, e);
+    restore_splits(op, reflected, transmitted);
     if (interface.scattering == Scattering::Multiple) {
         if (interface.distribution == Distribution::Blinn) {
             add_lost_flux(op.exchange, e);

@@ -32,10 +32,12 @@ inline constexpr int interface_cells = 64;
 
 /// Computes the operator from lattice-sampled walks in every cell (parallel, the same whatever the
 /// thread count). Each pair of cells is estimated from both ends, weighted by the inverse of
-/// their variances. `multiple` is then made exactly energy-conserving and stays symmetric: by a
-/// symmetric Sinkhorn scaling D S D for ggx and beckmann; for blinn, whose V-cavities have no
-/// walk here, by adding the lost flux back in the reciprocal product form d d^T / sum d
-/// (Kelemen and Szirmay-Kalos 2001), d = what each cell loses.
+/// their variances, then each cell's split between reflection and transmission is set back to its
+/// own estimate (Sinkhorn scaling of each block, which keeps the symmetry). `multiple` is then made
+/// exactly energy-conserving and stays symmetric: by a symmetric Sinkhorn scaling D S D for ggx and
+/// beckmann; for blinn, whose V-cavities have no walk here, by adding the lost flux back in the
+/// reciprocal product form d d^T / sum d (Kelemen and Szirmay-Kalos 2001), d = what each cell
+/// loses.
 InterfaceOperator compute_interface_operator(const RoughInterface& interface);
 
 /// The operator without its numbers: grids for an interface of this IOR ratio.

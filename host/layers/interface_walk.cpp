@@ -25,30 +25,16 @@ int kernel_distribution(Distribution distribution) {
 
 namespace {
 
-/// PCG output function (O'Neill 2014) of two counters, in [0, 1).
-double hashed_uniform(unsigned walk, unsigned dimension) {
-    std::uint32_t state = walk * 747796405U + (dimension + 1U) * 2891336453U;
-    for (int round = 0; round < 2; ++round) {
-        state = state * 747796405U + 2891336453U;
+/// PCG output function (O'Neill 2014) of three counters, in [0, 1).
+double hashed_uniform(unsigned walk, unsigned stream, unsigned dimension) {
+    std::uint32_t state = stream;
+    for (const std::uint32_t counter : {walk, dimension, 0U}) {
+        state = (state + counter) * 747796405U + 2891336453U;
         state = ((state >> ((state >> 28U) + 4U)) ^ state) * 277803737U;
         state = (state >> 22U) ^ state;
     }
     return state * 0x1p-32;
 }
-
-/// A Korobov lattice's generator vector, shifted by fixed hashed offsets. 1516 modulo 4093:
-/// L'Ecuyer and Lemieux 2000, "Variance reduction via lattice rules", table 1.
-struct Lattice {
-    std::array<double, WalkNumbers::lattice_dimensions> generator{}, shift{};
-    Lattice() {
-        std::uint64_t g = 1;
-        for (unsigned d = 0; d < generator.size(); ++d) {
-            generator[d] = static_cast<double>(g) / WalkNumbers::count;
-            shift[d] = hashed_uniform(0x5eedU, d);
-            g = g * 1516U % WalkNumbers::count;
-        }
-    }
-};
 
 double lambda_of(int distribution, double alpha, const Vec3& w) {
     // at grazing Lambda is infinite; the bound keeps 0 * inf out and changes nothing visible
@@ -212,16 +198,30 @@ private:
 
 } // namespace
 
-WalkNumbers::WalkNumbers(unsigned walk) : walk_(walk) {}
+LatticeRule lattice_rule(const RoughInterface& interface) {
+    // generators: 220 is the best of 400 by the P2 figure of merit (Sloan and Joe 1994, section
+    // 4) in 12 dimensions with weights 0.6^d; 5130 as in L'Ecuyer and Lemieux 2000, table 1
+    const bool walks = interface.scattering == Scattering::Multiple &&
+                       interface.distribution != Distribution::Blinn;
+    return walks ? LatticeRule{4093, 220} : LatticeRule{8191, 5130};
+}
+
+WalkStream::WalkStream(const LatticeRule& rule, unsigned stream_seed) : seed(stream_seed) {
+    std::uint64_t power = 1;
+    for (unsigned d = 0; d < dimensions; ++d) {
+        generator[d] = static_cast<double>(power) / rule.count;
+        shift[d] = hashed_uniform(~0U, seed, d);
+        power = power * rule.generator % rule.count;
+    }
+}
 
 double WalkNumbers::next() {
-    static const Lattice lattice;
     const unsigned d = dimension_++;
-    if (d >= lattice.generator.size()) {
-        return hashed_uniform(walk_, d);
+    if (d >= WalkStream::dimensions) {
+        return hashed_uniform(walk_, stream_.seed, d);
     }
-    const double x = walk_ * lattice.generator[d] + lattice.shift[d];
-    return x - std::floor(x);
+    const double x = walk_ * stream_.generator[d] + stream_.shift[d];
+    return x - static_cast<double>(static_cast<unsigned>(x));
 }
 
 double scatter_at_interface(const RoughInterface& interface, bool from_below, double cosine,

@@ -21,18 +21,31 @@ struct RoughInterface {
 /// MICROFACET_* of the kernels.
 int kernel_distribution(Distribution distribution);
 
-/// Uniform numbers of one walk: the first ones from a lattice rule, the rest from a hash of
-/// (walk, dimension). Counter-based: nothing depends on the order in which walks are run.
+/// A rank-1 lattice rule of Korobov's form: `count` points, generator vector 1, g, g^2, ...
+struct LatticeRule {
+    unsigned count, generator;
+};
+/// The rule that an interface's operator is sampled with: more points where a walk is one event.
+LatticeRule lattice_rule(const RoughInterface& interface);
+
+/// A lattice rule shifted by offsets hashed from `seed`.
+struct WalkStream {
+    static constexpr unsigned dimensions = 12;
+    WalkStream(const LatticeRule& rule, unsigned seed);
+
+    unsigned seed;
+    std::array<double, dimensions> generator{}, shift{};
+};
+
+/// Uniform numbers of one walk: the first ones from the stream's lattice, the rest from a hash of
+/// (walk, seed, dimension). Counter-based: nothing depends on the order in which walks are run.
 class WalkNumbers {
 public:
-    static constexpr int lattice_dimensions = 12;
-    /// Number of walks in one rule.
-    static constexpr unsigned count = 4093;
-
-    explicit WalkNumbers(unsigned walk);
+    WalkNumbers(const WalkStream& stream, unsigned walk) : stream_(stream), walk_(walk) {}
     double next();
 
 private:
+    const WalkStream& stream_;
     unsigned walk_;
     unsigned dimension_ = 0;
 };

@@ -165,18 +165,20 @@ private:
             1.0 / layer.ior, layer.distribution, layer.alpha, Scattering::Single
         };
         Eigen::VectorXd albedo = Eigen::VectorXd::Zero(grid.cells());
+        const LatticeRule rule = lattice_rule(interface);
         std::vector<Departure> departures;
         for (int cell = 0; cell < grid.cells(); ++cell) {
             const double low = grid.edges[static_cast<std::size_t>(cell)];
             const double high = grid.edges[static_cast<std::size_t>(cell) + 1];
-            for (unsigned walk = 0; walk < WalkNumbers::count; ++walk) {
-                WalkNumbers numbers(walk);
+            const WalkStream stream(rule, static_cast<unsigned>(cell));
+            for (unsigned walk = 0; walk < rule.count; ++walk) {
+                WalkNumbers numbers(stream, walk);
                 const double c =
                     std::sqrt(low * low + (high - low) * (high + low) * numbers.next());
                 departures.clear();
                 albedo(cell) +=
                     scatter_at_interface(interface, true, std::min(c, 1.0), numbers, departures) /
-                    WalkNumbers::count;
+                    rule.count;
             }
         }
         return albedo;

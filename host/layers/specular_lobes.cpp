@@ -34,8 +34,9 @@ double CosineTable::operator()(double cosine) const {
 
 namespace {
 
-/// Walks a node: enough for an amplitude, which is then corrected by what it misses.
-constexpr unsigned lobe_samples = 1023;
+/// Facets a node: enough for an amplitude, whose shortfall goes to the residual. Generator as in
+/// L'Ecuyer and Lemieux 2000, table 1.
+constexpr LatticeRule lobe_rule{1021, 76};
 
 /// Share of a unit lobe's flux without Fresnel, one sample of the visible facets: G2 / G1.
 double lobe_share(int distribution, double alpha, const Vec3& wi, const Vec3& wo, const Vec3& h) {
@@ -50,12 +51,13 @@ double lobe_share(int distribution, double alpha, const Vec3& wi, const Vec3& wo
 /// K(i, o): albedo of the lobe at node i that comes from amplitudes at node o.
 Eigen::MatrixXd spread_matrix(const AddingTransport::Lobe& lobe) {
     const int distribution = kernel_distribution(lobe.distribution);
+    const WalkStream stream(lobe_rule, 0);
     Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(CosineTable::nodes, CosineTable::nodes);
     for (int node = 0; node < CosineTable::nodes; ++node) {
         const double c = std::max(CosineTable::node_cosine(node), 1e-6);
         const Vec3 wi = kernels::vec3(std::sqrt((1.0 - c) * (1.0 + c)), 0.0, c);
-        for (unsigned sample = 0; sample < lobe_samples; ++sample) {
-            WalkNumbers numbers(sample * 4U + 1U);
+        for (unsigned sample = 0; sample < lobe_rule.count; ++sample) {
+            WalkNumbers numbers(stream, sample);
             const double u1 = numbers.next(), u2 = numbers.next();
             const Vec3 h = kernels::microfacet_sample(distribution, lobe.alpha, wi, u1, u2);
             const double cos_h = kernels::vec3_dot(wi, h);
@@ -63,7 +65,7 @@ Eigen::MatrixXd spread_matrix(const AddingTransport::Lobe& lobe) {
             if (cos_h <= 0.0 || wo.z <= 0.0) {
                 continue;
             }
-            const double share = lobe_share(distribution, lobe.alpha, wi, wo, h) / lobe_samples;
+            const double share = lobe_share(distribution, lobe.alpha, wi, wo, h) / lobe_rule.count;
             const double x = std::sqrt(std::min(wo.z, 1.0)) * (CosineTable::nodes - 1);
             const int left = std::min(static_cast<int>(x), CosineTable::nodes - 2);
             spread(node, left) += share * (left + 1 - x);
