@@ -1,0 +1,25 @@
+#include "tests/kernels/probe.h"
+
+#include <algorithm>
+
+namespace reradiant::test {
+
+const Device& device() {
+    static const Device opened = [] {
+        prepare_opencl(0);
+        return Device("");
+    }();
+    return opened;
+}
+
+const cl::Program& probes() {
+    static const cl::Program program =
+        build_program(device(), "tests/kernels/probes.cl", {{"CHUNKS", 4}, {"LOBES", 1}});
+    return program;
+}
+
+double relative_difference(double a, double b, double floor) {
+    return std::abs(a - b) / std::max(std::abs(b), floor);
+}
+
+} // namespace reradiant::test
