@@ -28,9 +28,8 @@ DEVICE_FUNCTION CameraRay camera_ray(CameraRecord camera, real x, real y, real l
 #if FEATURE_LENS
     const Vec3 focus = vec3_scale(direction, camera.focus_distance);
     const Vec3 disk = sampling_disk(lens_u, lens_v);
-    const Vec3 lens =
-        vec3_add(vec3_scale(vec3_normalise(right), camera.lens_radius * disk.x),
-                 vec3_scale(vec3_normalise(up), camera.lens_radius * disk.y));
+    const Vec3 lens = vec3_add(vec3_scale(vec3_normalise(right), camera.lens_radius * disk.x),
+                               vec3_scale(vec3_normalise(up), camera.lens_radius * disk.y));
     ray.origin = vec3_add(ray.origin, lens);
     direction = vec3_sub(focus, lens);
 #endif

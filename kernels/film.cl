@@ -13,8 +13,8 @@ int16 film_not_finite(float16 v) {
 }
 
 /// A path's radiance in film lanes; returns 0 when some lane is not finite.
-int film_read(__global const float* path, __global const int* bands,
-              __global const float* weights, float16* value) {
+int film_read(__global const float* path, __global const int* bands, __global const float* weights,
+              float16* value) {
     int16 bad = (int16)(0);
 #if FEATURE_SCATTER
     for (uint c = 0u; c < FILM_CHUNKS; ++c)
@@ -49,11 +49,10 @@ float film_luminance(const float16* value, __global const float* y_weights) {
 /// samples), sum of squares. statistics: [pixel][5]: sums of Y and of Y^2, their compensations,
 /// samples refused. bands: [phase][LANES], where a lane goes; weights: [phase][LANES][2], its
 /// weight there and in the band above.
-__kernel void film(__global float* sums, __global float* statistics,
-                   __global const float* radiance, __global const PathState* paths,
-                   __global const int* bands, __global const float* weights,
-                   __global const float* y_weights, uint first_pixel, uint first_sample,
-                   uint samples, uint pixel_count) {
+__kernel void film(__global float* sums, __global float* statistics, __global const float* radiance,
+                   __global const PathState* paths, __global const int* bands,
+                   __global const float* weights, __global const float* y_weights, uint first_pixel,
+                   uint first_sample, uint samples, uint pixel_count) {
     const uint pixel = (uint)get_global_id(0);
     if (pixel >= pixel_count)
         return;
@@ -64,8 +63,7 @@ __kernel void film(__global float* sums, __global float* statistics,
         const size_t path = (size_t)pixel * samples + s;
         const uint offset = paths[path].phase * LANES;
         float16 value[FILM_CHUNKS];
-        if (!film_read(radiance + path * LANES, bands + offset, weights + 2u * offset,
-                       value)) {
+        if (!film_read(radiance + path * LANES, bands + offset, weights + 2u * offset, value)) {
             statistics[4] += 1.0f;
             continue;
         }
@@ -76,8 +74,7 @@ __kernel void film(__global float* sums, __global float* statistics,
             const float16 next = sum + corrected;
             vstore16((next - sum) - corrected, c, base + FILM_LANES);
             vstore16(next, c, base);
-            vstore16(vload16(c, base + 2 * FILM_LANES) + sign * value[c], c,
-                     base + 2 * FILM_LANES);
+            vstore16(vload16(c, base + 2 * FILM_LANES) + sign * value[c], c, base + 2 * FILM_LANES);
 #if FEATURE_BAND_VARIANCE
             vstore16(vload16(c, base + 3 * FILM_LANES) + value[c] * value[c], c,
                      base + 3 * FILM_LANES);

@@ -26,9 +26,9 @@ float grey_lookup(__global const float* table, TableStencil s) {
 float16 stack_lookup(const GatherContext* context, uint offset, TableStencil s, uint chunk) {
 #if FEATURE_SPECTRAL_STACK
     if (context->material.spectral) {
-        __global const float* rows =
-            context->tables + offset +
-            ((size_t)context->phase * TABLE_NODES + s.node) * LANES + chunk * WIDTH;
+        __global const float* rows = context->tables + offset +
+                                     ((size_t)context->phase * TABLE_NODES + s.node) * LANES +
+                                     chunk * WIDTH;
         return s.w0 * vload16(0, rows) + s.w1 * vload16(0, rows + LANES) +
                s.w2 * vload16(0, rows + 2 * LANES) + s.w3 * vload16(0, rows + 3 * LANES);
     }
@@ -84,8 +84,7 @@ void gather_direction(const GatherContext* context, DirectionRecord d, Vec3 wo, 
         const uint size = TABLE_NODES * (m.spectral ? context->phases * LANES : 1u);
         for (uint l = 0u; l < m.lobe_count; ++l)
             if (lobe_weights[l] > 0.0f)
-                specular += lobe_weights[l] *
-                            stack_lookup(context, m.amplitude + l * size, si, c) *
+                specular += lobe_weights[l] * stack_lookup(context, m.amplitude + l * size, si, c) *
                             stack_lookup(context, m.amplitude + l * size, so, c);
 #endif
         up[c] += incident * specular;
@@ -100,10 +99,9 @@ void substrate(const GatherContext* context, const float16* down, float16* emitt
         emitted[c] = vload16(c, diagonal) * down[c];
 #if FEATURE_FLUORESCENCE
     if (m.rank > 0u)
-        reradiation_factored(down, emitted,
-                             context->tables + m.factors +
-                                 (size_t)context->phase * (2u * m.rank * LANES),
-                             m.rank);
+        reradiation_factored(
+            down, emitted,
+            context->tables + m.factors + (size_t)context->phase * (2u * m.rank * LANES), m.rank);
 #if FEATURE_DENSE_MATRIX
     if (m.dense != NO_INDEX)
         reradiation_dense(down, emitted,
@@ -140,9 +138,8 @@ void gather_vertex(const GatherContext* context, const VertexRecord* vertex, int
 }
 
 __kernel void gather(__global float* radiance_out, __global const PathState* paths,
-                     __global const VertexRecord* vertices,
-                     __global const RayRecord* shadow_rays, __global const float* lobe_weights,
-                     __global const MaterialRecord* materials,
+                     __global const VertexRecord* vertices, __global const RayRecord* shadow_rays,
+                     __global const float* lobe_weights, __global const MaterialRecord* materials,
                      __global const LayerRecord* layers, __global const LightRecord* lights,
                      __global const float* tables, uint path_count, uint capacity, uint phases) {
     const uint path = (uint)get_global_id(0);

@@ -107,8 +107,8 @@ DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice*
 #endif
 #if FEATURE_ROUGH
     if (u0 < choice->cumulative[CHOICE_TOP])
-        return layer_stack_sample_lobe((int)stack.layers[0].distribution, stack.layers[0].alpha,
-                                       wo, u1, u2);
+        return layer_stack_sample_lobe((int)stack.layers[0].distribution, stack.layers[0].alpha, wo,
+                                       u1, u2);
 #endif
 #if FEATURE_DEEPER_LOBES
     for (uint l = 0u; l < stack.record.lobe_count; ++l)
@@ -159,8 +159,7 @@ DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi
 #if FEATURE_WEIDLICH_WILKIE
     if (stack.record.weidlich_wilkie) {
         const LayerRecord layer = stack.layers[stack.lobes[lobe].layer];
-        const real above =
-            layer_stack_descend(stack.layers, stack.lobes[lobe].layer, &wi, &wo);
+        const real above = layer_stack_descend(stack.layers, stack.lobes[lobe].layer, &wi, &wo);
         if (!(above > REAL(0.0)))
             return REAL(0.0);
         const Vec3 h = vec3_normalise(vec3_add(wi, wo));

@@ -66,8 +66,7 @@ DEVICE_FUNCTION LightSample lights_sample_sphere(LightRecord light, Vec3 from, r
     const Frame frame = sampling_frame(vec3_scale(to_center, REAL(1.0) / d));
     s.direction = sampling_to_world(frame, vec3(sine * cos(phi), sine * sin(phi), cosine));
     const real miss2 = d * sine * d * sine;
-    s.distance =
-        d * cosine - sqrt(fmax(REAL(0.0), square(light.radius_or_area) - miss2));
+    s.distance = d * cosine - sqrt(fmax(REAL(0.0), square(light.radius_or_area) - miss2));
     s.pdf = REAL(1.0) / (REAL(2.0) * PI_REAL * cone);
     s.weight = REAL(2.0) * PI_REAL * cone;
     return s;

@@ -65,10 +65,18 @@ DEVICE_FUNCTION Vec3 vec3(real x, real y, real z) {
     v.z = z;
     return v;
 }
-DEVICE_FUNCTION Vec3 vec3_add(Vec3 a, Vec3 b) { return vec3(a.x + b.x, a.y + b.y, a.z + b.z); }
-DEVICE_FUNCTION Vec3 vec3_sub(Vec3 a, Vec3 b) { return vec3(a.x - b.x, a.y - b.y, a.z - b.z); }
-DEVICE_FUNCTION Vec3 vec3_scale(Vec3 a, real s) { return vec3(a.x * s, a.y * s, a.z * s); }
-DEVICE_FUNCTION real vec3_dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+DEVICE_FUNCTION Vec3 vec3_add(Vec3 a, Vec3 b) {
+    return vec3(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+DEVICE_FUNCTION Vec3 vec3_sub(Vec3 a, Vec3 b) {
+    return vec3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+DEVICE_FUNCTION Vec3 vec3_scale(Vec3 a, real s) {
+    return vec3(a.x * s, a.y * s, a.z * s);
+}
+DEVICE_FUNCTION real vec3_dot(Vec3 a, Vec3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 DEVICE_FUNCTION Vec3 vec3_cross(Vec3 a, Vec3 b) {
     return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
@@ -76,7 +84,9 @@ DEVICE_FUNCTION Vec3 vec3_cross(Vec3 a, Vec3 b) {
 DEVICE_FUNCTION Vec3 vec3_normalise(Vec3 a) {
     return vec3_scale(a, REAL(1.0) / sqrt(vec3_dot(a, a)));
 }
-DEVICE_FUNCTION real square(real x) { return x * x; }
+DEVICE_FUNCTION real square(real x) {
+    return x * x;
+}
 
 KERNELS_END
 

@@ -50,16 +50,15 @@ SurfacePoint surface_point(HitRecord hit, RayRecord ray) {
         point.geometric = vec3_scale(point.geometric, -1.0f);
         shading = vec3_scale(shading, -1.0f);
     }
-    point.frame =
-        sampling_frame(vec3_dot(shading, to_camera) > 0.0f ? shading : point.geometric);
+    point.frame = sampling_frame(vec3_dot(shading, to_camera) > 0.0f ? shading : point.geometric);
     point.wo = sampling_to_local(point.frame, to_camera);
     return point;
 }
 
 VertexRecord empty_vertex(void) {
     const DirectionRecord nothing = {0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f};
-    VertexRecord vertex = {NO_INDEX, NO_INDEX, 0.0f, NO_INDEX, 0.0f, 0.0f, 1.0f, 0u,
-                           nothing,  nothing};
+    VertexRecord vertex = {NO_INDEX, NO_INDEX, 0.0f, NO_INDEX, 0.0f,
+                           0.0f,     1.0f,     0u,   nothing,  nothing};
     return vertex;
 }
 
@@ -180,11 +179,10 @@ int end_on_emitter(RayRecord ray, HitRecord hit, PathState state,
 __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
                     __global PathState* paths, __global VertexRecord* vertices,
                     __global RayRecord* shadow_rays, __global float* lobe_weights,
-                    __global const MaterialRecord* materials,
-                    __global const LayerRecord* layers, __global const LobeRecord* lobes,
-                    __global const LightRecord* lights, __global const float* tables,
-                    uint path_count, uint capacity, uint depth, uint max_depth, uint min_depth,
-                    uint light_count, uint environment, uint seed) {
+                    __global const MaterialRecord* materials, __global const LayerRecord* layers,
+                    __global const LobeRecord* lobes, __global const LightRecord* lights,
+                    __global const float* tables, uint path_count, uint capacity, uint depth,
+                    uint max_depth, uint min_depth, uint light_count, uint environment, uint seed) {
     const uint path = (uint)get_global_id(0);
     if (path >= path_count)
         return;
@@ -219,16 +217,14 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
 
 #if FEATURE_LIGHT_SAMPLING
     if (light_count > 0u)
-        shadow_rays[slot] =
-            sample_light(point, stack, &choice, lights, light_count,
-                         random_4(state.pixel, state.sample, 2u * depth + 1u, seed), &vertex,
-                         next_lobes + LOBES);
+        shadow_rays[slot] = sample_light(point, stack, &choice, lights, light_count,
+                                         random_4(state.pixel, state.sample, 2u * depth + 1u, seed),
+                                         &vertex, next_lobes + LOBES);
 #endif
 
     const Random4 u = random_4(state.pixel, state.sample, 2u * depth + 2u, seed);
     state.throughput *= choice.albedo;
-    const real survival =
-        depth + 1u < min_depth ? 1.0f : fmin(1.0f, fmax(state.throughput, 0.05f));
+    const real survival = depth + 1u < min_depth ? 1.0f : fmin(1.0f, fmax(state.throughput, 0.05f));
     if (u.d < survival) {
         rays[path] = sample_direction(point, stack, &choice, u, survival, &vertex, next_lobes,
                                       &state.bsdf_pdf);

@@ -55,14 +55,14 @@ ASSERT_SIZE(HitRecord, 64);
 
 typedef struct {
     shared_uint type;
-    shared_uint spectrum;               ///< offset in the tables: [phase][lane]
-    shared_float selection;             ///< probability of light sampling; 0: never sampled
-    shared_float cumulative;            ///< sum of `selection` up to and with this light
-    shared_float px, py, pz;            ///< centre, position
-    shared_float radius_or_area;        ///< sphere: radius; rectangle: area
-    shared_float ux, uy, uz;            ///< rectangle: full edge u
-    shared_float vx, vy, vz;            ///< rectangle: full edge v
-    shared_float nx, ny, nz;            ///< rectangle: unit normal; directional: way of travel
+    shared_uint spectrum;        ///< offset in the tables: [phase][lane]
+    shared_float selection;      ///< probability of light sampling; 0: never sampled
+    shared_float cumulative;     ///< sum of `selection` up to and with this light
+    shared_float px, py, pz;     ///< centre, position
+    shared_float radius_or_area; ///< sphere: radius; rectangle: area
+    shared_float ux, uy, uz;     ///< rectangle: full edge u
+    shared_float vx, vy, vz;     ///< rectangle: full edge v
+    shared_float nx, ny, nz;     ///< rectangle: unit normal; directional: way of travel
     shared_float padding;
 } LightRecord;
 ASSERT_SIZE(LightRecord, 72);
@@ -108,11 +108,12 @@ typedef struct {
     shared_uint diagonal;     ///< [phase][lane]: over pi n_k^2
     shared_uint factors;      ///< [phase][2 * RANK][lane]: emission then excitation
     shared_uint dense;        ///< [phase][excitation lane][emission lane]
-    shared_uint choice;       ///< [node][4 + LOBES]: cumulative: delta, top, lobes..., diffuse; then albedo
-    shared_uint first_layer;  ///< into the layers
+    shared_uint
+        choice; ///< [node][4 + LOBES]: cumulative: delta, top, lobes..., diffuse; then albedo
+    shared_uint first_layer; ///< into the layers
     shared_uint layer_count;
     shared_uint lobe_count;
-    shared_uint first_lobe;   ///< into the lobes
+    shared_uint first_lobe; ///< into the lobes
     shared_uint has_top_lobe;
     shared_uint weidlich_wilkie; ///< 1: rough factors of model A multiply the diffuse part
     shared_uint rank;
@@ -124,30 +125,30 @@ typedef struct {
     shared_uint pixel;
     shared_uint sample;
     shared_uint phase;
-    shared_uint vertex_count;    ///< records written for this path
-    shared_float bsdf_pdf;       ///< of the last direction; < 0: delta or camera
-    shared_float throughput;     ///< running estimate for Russian roulette
+    shared_uint vertex_count; ///< records written for this path
+    shared_float bsdf_pdf;    ///< of the last direction; < 0: delta or camera
+    shared_float throughput;  ///< running estimate for Russian roulette
 } PathState;
 ASSERT_SIZE(PathState, 24);
 
 /// Weights of one of the two directions that a vertex gathers from. Each is a scalar times
 /// cos(theta_i) / pdf; the lanes' factors are applied in `gather`.
 typedef struct {
-    shared_float x, y, z;   ///< direction, local frame
-    shared_float diffuse;   ///< times T(o) B T(i), and the residual's product
-    shared_float top;       ///< times Fresnel (already inside unless dispersive)
-    shared_float delta;     ///< times the delta table
+    shared_float x, y, z; ///< direction, local frame
+    shared_float diffuse; ///< times T(o) B T(i), and the residual's product
+    shared_float top;     ///< times Fresnel (already inside unless dispersive)
+    shared_float delta;   ///< times the delta table
 } DirectionRecord;
 ASSERT_SIZE(DirectionRecord, 24);
 
 /// What happened where a path met a surface (or a light, or the environment).
 typedef struct {
-    shared_uint material;     ///< NO_INDEX: the path ended on `emitter`
-    shared_uint emitter;      ///< light whose radiance is seen here
-    shared_float emitted;     ///< its weight
-    shared_uint light;        ///< light sampled, or NO_INDEX
+    shared_uint material;             ///< NO_INDEX: the path ended on `emitter`
+    shared_uint emitter;              ///< light whose radiance is seen here
+    shared_float emitted;             ///< its weight
+    shared_uint light;                ///< light sampled, or NO_INDEX
     shared_float out_x, out_y, out_z; ///< direction towards the camera, local frame
-    shared_uint has_next;     ///< the path goes on
+    shared_uint has_next;             ///< the path goes on
     DirectionRecord next, towards_light;
 } VertexRecord;
 ASSERT_SIZE(VertexRecord, 80);

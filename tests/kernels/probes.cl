@@ -13,7 +13,10 @@
 #include "kernels/shared.h"
 #include "kernels/table.h"
 
-#define ITEM const uint i = (uint)get_global_id(0); if (i >= count) return
+#define ITEM                                                                                       \
+    const uint i = (uint)get_global_id(0);                                                         \
+    if (i >= count)                                                                                \
+    return
 
 __kernel void probe_fresnel(__global const float* in, __global float* out, uint count) {
     ITEM;
@@ -83,7 +86,8 @@ __kernel void probe_lights(__global const float* in, __global float* out, uint c
 __kernel void probe_camera(__global const float* in, __global float* out, uint count,
                            CameraRecord camera) {
     ITEM;
-    const CameraRay ray = camera_ray(camera, in[4 * i], in[4 * i + 1], in[4 * i + 2], in[4 * i + 3]);
+    const CameraRay ray =
+        camera_ray(camera, in[4 * i], in[4 * i + 1], in[4 * i + 2], in[4 * i + 3]);
     out[6 * i] = ray.origin.x;
     out[6 * i + 1] = ray.origin.y;
     out[6 * i + 2] = ray.origin.z;
