@@ -1,5 +1,6 @@
 #include "host/scene/mesh_io.h"
 #include "host/scene/ply_header.h"
+#include "host/scene/table_reader.h"
 
 #include <algorithm>
 #include <bit>
@@ -14,6 +15,14 @@ namespace reradiant {
 
 namespace {
 
+/// What a value belongs to, made into text for an error only.
+struct PlyItem {
+    std::string_view element;
+    std::uint64_t index;
+
+    std::string text() const { return fmt::format("{} {}", element, index); }
+};
+
 /// The values after the header one by one, whatever the format.
 class PlyValues {
 public:
@@ -22,7 +31,7 @@ public:
           line_(header.line_count + 1), line_start_(header.size) {}
 
     /// The next value; integers up to 32 bits are exact as double.
-    double next(PlyType type, const std::string& what) {
+    double next(PlyType type, const PlyItem& what) {
         return format_ == PlyFormat::Ascii ? next_ascii(what) : next_binary(type, what);
     }
     std::size_t remaining() const { return bytes_.size() - next_; }
@@ -38,8 +47,8 @@ public:
     }
 
 private:
-    double next_ascii(const std::string& what);
-    double next_binary(PlyType type, const std::string& what);
+    double next_ascii(const PlyItem& what);
+    double next_binary(PlyType type, const PlyItem& what);
     template <typename T>
     double decode(const unsigned char* bytes) const {
         T value;
@@ -55,7 +64,7 @@ private:
     std::size_t line_start_;
 };
 
-double PlyValues::next_ascii(const std::string& what) {
+double PlyValues::next_ascii(const PlyItem& what) {
     while (next_ < bytes_.size() && std::strchr(" \t\r\n", bytes_[next_]) != nullptr) {
         if (bytes_[next_] == '\n') {
             ++line_;
@@ -68,23 +77,24 @@ double PlyValues::next_ascii(const std::string& what) {
     const std::string_view token = bytes_.substr(start_, end - start_);
     next_ = end;
     if (token.empty())
-        throw_input_error(position(), fmt::format("the file ends before {}", what),
+        throw_input_error(position(), fmt::format("the file ends before {}", what.text()),
                           "the file is truncated or a count is wrong");
     double value = 0.0;
     const auto [stop, failure] = std::from_chars(token.data(), token.data() + token.size(), value);
     if (failure == std::errc::result_out_of_range)
         return std::numeric_limits<double>::infinity();
     if (failure != std::errc() || stop != token.data() + token.size())
-        throw_input_error(position(), fmt::format("{} is \"{}\"", what, token.substr(0, 40)),
+        throw_input_error(position(), fmt::format("{} is \"{}\"", what.text(), token.substr(0, 40)),
                           "write a number");
     return value;
 }
 
-double PlyValues::next_binary(PlyType type, const std::string& what) {
+double PlyValues::next_binary(PlyType type, const PlyItem& what) {
     const std::size_t size = ply_type_size(type);
     start_ = next_;
     if (remaining() < size)
-        throw_input_error({file_}, fmt::format("the file ends before {}{}", what, byte_text()),
+        throw_input_error({file_},
+                          fmt::format("the file ends before {}{}", what.text(), byte_text()),
                           "the file is truncated or a count is wrong");
     std::array<unsigned char, 8> raw{};
     std::memcpy(raw.data(), bytes_.data() + next_, size);
@@ -111,6 +121,45 @@ double PlyValues::next_binary(PlyType type, const std::string& what) {
     }
 }
 
+constexpr std::size_t UNUSED = 8;
+
+/// Which of x y z nx ny nz u v each property of a vertex is.
+struct VertexColumns {
+    std::vector<std::size_t> slot_of_property;
+    bool has_normals = false, has_texture = false;
+};
+
+VertexColumns vertex_columns(const std::string& file, const PlyElement& element) {
+    static const std::vector<std::vector<const char*>> names{{"x"},
+                                                             {"y"},
+                                                             {"z"},
+                                                             {"nx"},
+                                                             {"ny"},
+                                                             {"nz"},
+                                                             {"u", "s", "texture_u"},
+                                                             {"v", "t", "texture_v"}};
+    VertexColumns columns;
+    columns.slot_of_property.assign(element.properties.size(), UNUSED);
+    std::array<bool, 8> found{};
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+        if (element.properties[i].is_list)
+            throw_input_error({file, element.line, 1}, "vertices have a list property",
+                              "remove it");
+        for (std::size_t slot = 0; slot < names.size(); ++slot)
+            for (const char* name : names[slot])
+                if (element.properties[i].name == name && !found[slot]) {
+                    columns.slot_of_property[i] = slot;
+                    found[slot] = true;
+                }
+    }
+    if (!found[0] || !found[1] || !found[2])
+        throw_input_error({file, element.line, 1}, "vertices have no x, y and z",
+                          "declare property float x, y and z");
+    columns.has_normals = found[3] && found[4] && found[5];
+    columns.has_texture = found[6] && found[7];
+    return columns;
+}
+
 /// Turns the elements of a PLY file into a mesh.
 class PlyReader {
 public:
@@ -122,12 +171,11 @@ public:
 
 private:
     void read_vertices(const PlyElement& element);
-    void store_vertex(const std::string& name, const std::vector<double>& values,
-                      const std::array<int, 8>& columns);
+    float read_coordinate(const PlyProperty& property, const PlyItem& vertex);
     void read_faces(const PlyElement& element);
     void read_corners(const PlyProperty& property, std::uint64_t face);
     void skip(const PlyElement& element);
-    std::uint64_t read_list_size(const PlyProperty& property, const std::string& what);
+    std::uint64_t read_list_size(const PlyProperty& property, const PlyItem& what);
     [[noreturn]] void fail(const std::string& wrong, const std::string& remedy) const {
         throw_input_error(values_.position(), wrong + values_.byte_text(), remedy);
     }
@@ -140,76 +188,54 @@ private:
     MeshShape mesh_;
 };
 
-std::uint64_t PlyReader::read_list_size(const PlyProperty& property, const std::string& what) {
-    const double size = values_.next(property.count_type, fmt::format("the count of {}", what));
+std::uint64_t PlyReader::read_list_size(const PlyProperty& property, const PlyItem& what) {
+    const double size = values_.next(property.count_type, what);
     // In ascii a value takes two bytes, in binary its size; one byte bounds both.
     if (!(size >= 0.0) || size != std::floor(size) ||
         size > static_cast<double>(values_.remaining()))
-        fail(fmt::format("the count of {} is {}", what, size),
+        fail(fmt::format("the count of {} is {}", what.text(), size),
              fmt::format("it must be a whole number that fits in the {} bytes left",
                          values_.remaining()));
     return static_cast<std::uint64_t>(size);
 }
 
-void PlyReader::store_vertex(const std::string& name, const std::vector<double>& values,
-                             const std::array<int, 8>& columns) {
-    static const std::array<const char*, 8> labels{"x", "y", "z", "nx", "ny", "nz", "u", "v"};
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        if (columns[i] < 0)
-            continue;
-        const float value =
-            mesh_coordinate(values[static_cast<std::size_t>(columns[i])], values_.position(),
-                            fmt::format("{} of {}{}", labels[i], name, values_.byte_text()));
-        (i < 3   ? mesh_.positions
-         : i < 6 ? mesh_.normals
-                 : mesh_.texture_coordinates)
-            .push_back(value);
-    }
+float PlyReader::read_coordinate(const PlyProperty& property, const PlyItem& vertex) {
+    const double value = values_.next(property.type, vertex);
+    if (std::fabs(value) <= MAX_COORDINATE) // no text is made for a good one
+        return static_cast<float>(value);
+    return mesh_coordinate(
+        value, values_.position(),
+        fmt::format("{} of {}{}", property.name, vertex.text(), values_.byte_text()));
 }
 
 void PlyReader::read_vertices(const PlyElement& element) {
-    const auto column = [&](std::initializer_list<const char*> names) {
-        for (const char* name : names)
-            if (const int index = element.index_of(name); index >= 0)
-                return index;
-        return -1;
-    };
-    std::array<int, 8> columns{column({"x"}),
-                               column({"y"}),
-                               column({"z"}),
-                               column({"nx"}),
-                               column({"ny"}),
-                               column({"nz"}),
-                               column({"u", "s", "texture_u"}),
-                               column({"v", "t", "texture_v"})};
-    if (columns[0] < 0 || columns[1] < 0 || columns[2] < 0)
-        throw_input_error({file_, element.line, 1}, "vertices have no x, y and z",
-                          "declare property float x, y and z");
-    if (columns[3] < 0 || columns[4] < 0 || columns[5] < 0)
-        columns[3] = columns[4] = columns[5] = -1;
-    if (columns[6] < 0 || columns[7] < 0)
-        columns[6] = columns[7] = -1;
+    const VertexColumns columns = vertex_columns(file_, element);
     vertex_count_ = element.count;
-    std::vector<double> values(element.properties.size());
+    std::array<float, 8> values{};
     for (std::uint64_t vertex = 0; vertex < element.count; ++vertex) {
-        const std::string name = fmt::format("vertex {}", vertex);
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            if (element.properties[i].is_list)
-                throw_input_error({file_, element.line, 1}, "vertices have a list property",
-                                  "remove it");
-            values[i] = values_.next(element.properties[i].type, name);
+        for (std::size_t i = 0; i < element.properties.size(); ++i) {
+            const std::size_t slot = columns.slot_of_property[i];
+            if (slot == UNUSED)
+                values_.next(element.properties[i].type, {"vertex", vertex});
+            else
+                values[slot] = read_coordinate(element.properties[i], {"vertex", vertex});
         }
-        store_vertex(name, values, columns);
+        mesh_.positions.insert(mesh_.positions.end(), values.begin(), values.begin() + 3);
+        if (columns.has_normals)
+            mesh_.normals.insert(mesh_.normals.end(), values.begin() + 3, values.begin() + 6);
+        if (columns.has_texture)
+            mesh_.texture_coordinates.insert(mesh_.texture_coordinates.end(), values.begin() + 6,
+                                             values.end());
     }
 }
 
 void PlyReader::read_corners(const PlyProperty& property, std::uint64_t face) {
-    const std::uint64_t size = read_list_size(property, fmt::format("face {}", face));
+    const std::uint64_t size = read_list_size(property, {"face", face});
     if (size < 3)
         fail(fmt::format("face {} has {} corners", face, size), "a face has at least 3");
     corners_.clear();
     for (std::uint64_t i = 0; i < size; ++i) {
-        const double index = values_.next(property.type, fmt::format("face {}", face));
+        const double index = values_.next(property.type, {"face", face});
         if (!(index >= 0.0 && index < static_cast<double>(vertex_count_)) ||
             index != std::floor(index))
             fail(fmt::format("face {} refers to vertex {} of {}", face, index, vertex_count_),
@@ -225,9 +251,9 @@ void PlyReader::skip(const PlyElement& element) {
     for (std::uint64_t i = 0; i < element.count; ++i)
         for (const PlyProperty& property : element.properties) {
             const std::uint64_t size =
-                property.is_list ? read_list_size(property, element.name) : 1;
+                property.is_list ? read_list_size(property, {element.name, i}) : 1;
             for (std::uint64_t k = 0; k < size; ++k)
-                values_.next(property.type, fmt::format("{} {}", element.name, i));
+                values_.next(property.type, {element.name, i});
         }
 }
 
@@ -245,7 +271,7 @@ void PlyReader::read_faces(const PlyElement& element) {
                 read_corners(property, face);
                 continue;
             }
-            const std::string what = fmt::format("face {}", face);
+            const PlyItem what{"face", face};
             const std::uint64_t size = property.is_list ? read_list_size(property, what) : 1;
             for (std::uint64_t k = 0; k < size; ++k)
                 values_.next(property.type, what);

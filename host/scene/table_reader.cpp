@@ -98,13 +98,21 @@ TableReader::TableReader(const toml::table& table, std::string file, std::string
                          std::vector<std::string> known_keys)
     : table_(&table), file_(std::move(file)), name_(std::move(name)),
       known_keys_(std::move(known_keys)) {
+    const toml::key* unknown = nullptr; // the first in the file: the table is sorted by name
+    const auto starts_before = [](const toml::key& a, const toml::key& b) {
+        return std::pair(a.source().begin.line, a.source().begin.column) <
+               std::pair(b.source().begin.line, b.source().begin.column);
+    };
     for (const auto& [key, node] : table) {
-        const std::string text(key.str());
-        if (std::find(known_keys_.begin(), known_keys_.end(), text) == known_keys_.end())
-            throw_input_error(position_of(file_, key.source()),
-                              fmt::format("unknown key \"{}\" in {}", text, name_),
-                              suggestion(text, known_keys_));
+        const bool known =
+            std::find(known_keys_.begin(), known_keys_.end(), key.str()) != known_keys_.end();
+        if (!known && (unknown == nullptr || starts_before(key, *unknown)))
+            unknown = &key;
     }
+    if (unknown != nullptr)
+        throw_input_error(position_of(file_, unknown->source()),
+                          fmt::format("unknown key \"{}\" in {}", unknown->str(), name_),
+                          suggestion(std::string(unknown->str()), known_keys_));
 }
 
 const toml::node* TableReader::find(const std::string& key) const {

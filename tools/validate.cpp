@@ -1,0 +1,163 @@
+#include "host/error.h"
+#include "host/geometry/geometry.h"
+#include "host/report/json_file.h"
+#include "host/scene/mesh_io.h"
+#include "host/scene/scene.h"
+#include "host/spectral/matrix_io.h"
+#include "tools/command.h"
+#include "tools/file_kind.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace reradiant {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string range_text(double from_nm, double to_nm) {
+    return fmt::format("{} to {} nm", from_nm, to_nm);
+}
+
+std::string grid_text(const WavelengthGrid& grid) {
+    return fmt::format("{} by {} nm", range_text(grid.from_nm, grid.to_nm()), grid.step_nm);
+}
+
+/// Column sums, and what rendering would change in the matrix (warnings go to the log).
+Json validate_matrix(const fs::path& file) {
+    ReradiationMatrix matrix = read_reradiation(file);
+    const ColumnBalance balance = column_balance(matrix);
+    const auto largest = [](const std::vector<double>& sums) {
+        return *std::max_element(sums.begin(), sums.end());
+    };
+    Json result = {{"kind", "re-radiation matrix"},
+                   {"claims", matrix.kind == MatrixKind::Model ? "model" : "measured"},
+                   {"emission", grid_text(matrix.emission)},
+                   {"excitation", grid_text(matrix.excitation)},
+                   {"fluorescent", matrix.is_fluorescent()},
+                   {"largest_energy_sum", largest(balance.radiant)},
+                   {"largest_photon_sum", largest(balance.photons)}};
+    std::vector<std::string> warnings;
+    try {
+        const std::string repairs = repair_for_rendering(matrix, warnings).text();
+        if (!repairs.empty())
+            warnings.insert(warnings.begin(), repairs);
+    } catch (const std::invalid_argument& error) {
+        throw_input_error({file.string()}, error.what());
+    }
+    for (const auto& warning : warnings)
+        spdlog::warn("{}: {}", file.string(), warning);
+    result["warnings"] = warnings;
+    return result;
+}
+
+Json validate_spectrum(const fs::path& file) {
+    const Spectrum spectrum = read_spectrum(file);
+    const double from = spectrum.data_from_nm(), to = spectrum.data_to_nm();
+    return {{"kind", "spectrum"},
+            {"range", range_text(from, to)},
+            {"lowest", spectrum.minimum(from, to)},
+            {"highest", spectrum.maximum(from, to)}};
+}
+
+Json describe_material(const Material& material) {
+    Json result = {{"name", material.name},
+                   {"model", model_name(material.model)},
+                   {"layers", material.stack.layers.size()},
+                   {"fluorescent", material.substrate.is_fluorescent()}};
+    if (material.substrate.is_fluorescent()) {
+        const auto excitation = material.substrate.excitation_range_nm();
+        const auto emission = material.substrate.emission_range_nm();
+        result["excited"] = range_text(excitation[0], excitation[1]);
+        result["emits"] = range_text(emission[0], emission[1]);
+    }
+    return result;
+}
+
+Json validate_material(const fs::path& file) {
+    Json result = {{"kind", "material"}};
+    result.update(describe_material(load_material(file)));
+    return result;
+}
+
+/// Builds the geometry too, which checks every primitive.
+Json validate_scene(const fs::path& file) {
+    const Scene scene = load_scene(file);
+    const Geometry geometry(scene);
+    Json result = {{"kind", "scene"},
+                   {"film", fmt::format("{} x {}", scene.film.width, scene.film.height)},
+                   {"lights", scene.lights.size()},
+                   {"shapes", scene.shapes.size()},
+                   {"triangles", geometry.triangle_count()},
+                   {"hash", scene.hash}};
+    if (scene.film.bands)
+        result["bands"] = grid_text(*scene.film.bands);
+    for (const Material& material : scene.materials)
+        result["materials"].push_back(describe_material(material));
+    return result;
+}
+
+Json validate_mesh(const fs::path& file) {
+    const MeshShape mesh = read_mesh(file);
+    return {{"kind", "mesh"},
+            {"vertices", mesh.positions.size() / 3},
+            {"triangles", mesh.indices.size() / 3},
+            {"shading_normals", !mesh.normals.empty()},
+            {"texture_coordinates", !mesh.texture_coordinates.empty()}};
+}
+
+Json validate(const fs::path& file) {
+    if (file.extension() == ".ply" || file.extension() == ".obj")
+        return validate_mesh(file);
+    switch (file_kind(file)) {
+    case FileKind::Scene:
+        return validate_scene(file);
+    case FileKind::Material:
+        return validate_material(file);
+    case FileKind::Matrix:
+        return validate_matrix(file);
+    case FileKind::Spectrum:
+        return validate_spectrum(file);
+    case FileKind::Image:
+        break;
+    }
+    throw_input_error({file.string()}, "an image is not an input of this program",
+                      "reradiant info says what an image holds");
+}
+
+void print(const Json& value, const std::string& margin) {
+    for (const auto& [key, entry] : value.items()) {
+        if (!entry.is_structured())
+            fmt::print("{}{}: {}\n", margin, key,
+                       entry.is_string() ? entry.get<std::string>() : entry.dump());
+        else if (!entry.empty() && key != "warnings") { // those are in the log already
+            fmt::print("{}{}:\n", margin, value.is_array() ? "-" : key);
+            print(entry, margin + "  ");
+        }
+    }
+}
+
+} // namespace
+
+void add_validate_command(CLI::App& program, CommandContext& context) {
+    auto file = std::make_shared<fs::path>();
+    CLI::App* const command = program.add_subcommand(
+        "validate", "Checks a scene, material, re-radiation matrix, spectrum or mesh");
+    command->add_option("FILE", *file, "TOML, CSV, BFC, EXR, SPD, PLY or OBJ file")->required();
+    command->footer("Example: reradiant validate scene.toml");
+    command->callback([file, &context] {
+        const Json result = validate(*file);
+        write_json(context.common.json, result);
+        if (!context.common.quiet) {
+            print(result, "");
+            fmt::print("valid\n");
+        }
+    });
+}
+
+} // namespace reradiant
