@@ -1,0 +1,59 @@
+#pragma once
+
+#include "host/scene/scene.h"
+
+#include <Eigen/Core>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+/// What a virtual bispectral goniophotometer is asked for. Angles in degrees, 0 <= theta < 90; phi
+/// is the azimuth of the outgoing direction from the incident one, 180 is the mirror side.
+struct MeasureRequest {
+    std::vector<double> theta_i_deg{0.0};
+    std::vector<double> theta_o_deg{0.0};
+    std::vector<double> phi_deg{0.0};
+    bool hemispherical = false; ///< directional-hemispherical; theta_o and phi are not used
+    Model model = Model::Auto;
+    std::optional<WavelengthGrid> bands; ///< empty: the matrix's own grid
+};
+
+enum class MeasuredPart { Diffuse, Specular };
+
+/// One value: 1/sr in per-band form without the cosine, or unit 1 when hemispherical. Diffuse is
+/// light that reached the substrate, specular is light that never did.
+struct MeasureRow {
+    double theta_i_deg, theta_o_deg, phi_deg;
+    double lambda_i_nm, lambda_o_nm;
+    double value, standard_error;
+    MeasuredPart part;
+};
+
+struct Measurement {
+    WavelengthGrid bands;
+    Model model = Model::Adding;
+    bool hemispherical = false;
+    std::vector<MeasureRow> rows;
+    std::vector<std::string> notes; ///< what a reader of the rows must know, a line each
+};
+
+/// Measures a material. Spectra are taken at band centres. Without `bands` the matrix's own grid is
+/// used; without a matrix, 300-780 nm in 10 nm steps when it fluoresces, else 380-780 nm. Input
+/// Error for angles out of range, the model `walk`, and a matrix whose two grids make no common
+/// one.
+Measurement measure_material(const Material& material, const MeasureRequest& request);
+
+/// The same for a stack over a substrate given by its per-band matrix, (bands, bands), rows =
+/// emission. `request.bands` is not used.
+Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_band,
+                          const WavelengthGrid& bands, const MeasureRequest& request);
+
+/// Writes the CSV of INTERFACE "measure": notes as # lines, then the header and one line a row, 12
+/// significant digits. Atomic.
+void write_measurement(const std::filesystem::path& file, const Measurement& measurement);
+
+} // namespace reradiant

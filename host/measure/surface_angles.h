@@ -1,0 +1,21 @@
+#pragma once
+
+#include "host/layers/stack.h"
+#include "host/spectral/grid.h"
+#include "kernels/portable.h"
+
+#include <vector>
+
+namespace reradiant {
+
+/// The stack at every band centre.
+std::vector<StackValues> values_at(const LayerStack& stack, const WavelengthGrid& bands);
+
+/// 0, 1 and the cosines in air between them where some medium of the stack turns from transparent
+/// to totally reflecting, or where a denser one changes the path: pieces for a quadrature.
+std::vector<double> breaks_in_air(const StackValues& stack);
+
+/// Unit vector in the local frame, azimuth in radians.
+kernels::Vec3 direction_at(double cos_theta, double phi);
+
+} // namespace reradiant

@@ -1,0 +1,89 @@
+#include "host/layers/interface_operator.h"
+#include "tests/layers/private_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+using namespace reradiant;
+
+namespace {
+
+const PrivateCache cache("interface-operator");
+
+double largest_loss(const InterfaceOperator& op) {
+    const Eigen::VectorXd sums = op.exchange.colwise().sum().transpose();
+    return (sums.array() / op.etendue().array() - 1.0).abs().maxCoeff();
+}
+
+} // namespace
+
+TEST(InterfaceOperator, MultipleScatteringIsConservingAndReciprocalTogether) {
+    for (const Distribution d : {Distribution::Blinn, Distribution::Beckmann, Distribution::Ggx}) {
+        const auto op = interface_operator({1.5, d, 0.4, Scattering::Multiple});
+        EXPECT_LT(largest_loss(*op), 1e-11); // the scaling stops at 1e-14 a step
+        EXPECT_EQ(op->exchange, op->exchange.transpose().eval());
+        EXPECT_GE(op->exchange.minCoeff(), 0.0);
+    }
+}
+
+TEST(InterfaceOperator, SingleScatteringIsReciprocalAndLoses) {
+    const auto op = interface_operator({1.5, Distribution::Ggx, 0.4, Scattering::Single});
+    EXPECT_LT((op->exchange - op->exchange.transpose()).cwiseAbs().maxCoeff(), 1e-15);
+    const Eigen::VectorXd sums = op->exchange.colwise().sum().transpose();
+    EXPECT_LE((sums.array() / op->etendue().array()).maxCoeff(), 1.0 + 5e-3); // sampling
+    EXPECT_GT(largest_loss(*op), 0.05);
+}
+
+TEST(InterfaceOperator, IndicesBetweenTheNodesAreInterpolated) {
+    const RoughInterface between{1.5234, Distribution::Ggx, 0.4, Scattering::Multiple};
+    const auto interpolated = interface_operator(between);
+    const InterfaceOperator direct = compute_interface_operator(between);
+    EXPECT_LT(largest_loss(*interpolated), 1e-11);
+    const Eigen::Index n = interface_cells;
+    // both carry the sampling error of their own walks
+    const auto transmitted = [&](const InterfaceOperator& op) {
+        return op.exchange.bottomLeftCorner(n, n).sum();
+    };
+    EXPECT_NEAR(transmitted(*interpolated), transmitted(direct), 1e-3);
+}
+
+TEST(InterfaceOperator, DamagedCacheFilesAreComputedAgain) {
+    const RoughInterface interface { 1.7, Distribution::Ggx, 0.7, Scattering::Single };
+    const auto first = interface_operator(interface);
+    const auto files = [&] {
+        std::vector<std::filesystem::path> found;
+        for (const auto& entry :
+             std::filesystem::directory_iterator(cache.folder() / "interfaces")) {
+            found.push_back(entry.path());
+        }
+        return found;
+    };
+    ASSERT_FALSE(files().empty());
+    for (const auto& file : files()) {
+        std::fstream damage(file, std::ios::in | std::ios::out | std::ios::binary);
+        damage.seekp(5000);
+        damage.put('\x55');
+    }
+    // memory holds this one: another process would read the file, so ask the reader by its use
+    const auto again = interface_operator(interface);
+    EXPECT_EQ(first->exchange, again->exchange);
+}
+
+TEST(InterfaceOperator, UnwritableCacheIsNoError) {
+    const char* const old = std::getenv("RERADIANT_CACHE");
+    const std::string saved = old != nullptr ? old : "";
+    setenv("RERADIANT_CACHE", "/proc/nowhere", 1);
+    EXPECT_NO_THROW(interface_operator({1.3, Distribution::Ggx, 0.9, Scattering::Single}));
+    setenv("RERADIANT_CACHE", saved.c_str(), 1);
+}
+
+TEST(InterfaceOperator, SymmetricScalingReachesItsTarget) {
+    Eigen::MatrixXd m(3, 3);
+    m << 4, 1, 2, 1, 3, 1, 2, 1, 5;
+    const Eigen::VectorXd target = Eigen::Vector3d(1, 2, 3);
+    scale_symmetric(m, target);
+    EXPECT_LT((m.colwise().sum().transpose() - target).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT((m - m.transpose()).cwiseAbs().maxCoeff(), 1e-15);
+}

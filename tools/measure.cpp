@@ -1,0 +1,96 @@
+#include "host/measure/measure.h"
+#include "host/error.h"
+#include "host/report/json_file.h"
+#include "tools/command.h"
+#include "tools/parse_options.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace reradiant {
+
+namespace {
+
+struct MeasureOptions {
+    std::filesystem::path material, output;
+    std::vector<double> theta_i{0.0}, theta_o{0.0}, phi{0.0};
+    bool hemispherical = false;
+    std::string model = "auto", bands;
+    long samples = 0;
+};
+
+/// Errors of meaning have no place of their own: they are placed at the material's file.
+Measurement measure_file(const MeasureOptions& options, const MeasureRequest& request) {
+    const Material material = load_material(options.material);
+    try {
+        return measure_material(material, request);
+    } catch (const Error& error) {
+        if (error.kind() == Error::Kind::Input && error.position().file.empty()) {
+            throw_input_error({options.material.string()}, error.what());
+        }
+        throw;
+    }
+}
+
+int run_measure(const MeasureOptions& options, const CommonOptions& common) {
+    MeasureRequest request;
+    request.theta_i_deg = options.theta_i;
+    request.theta_o_deg = options.theta_o;
+    request.phi_deg = options.phi;
+    request.hemispherical = options.hemispherical;
+    request.model = parse_model_option(options.model);
+    if (!options.bands.empty()) {
+        request.bands = parse_bands_option(options.bands);
+    }
+    check_output_folder(options.output);
+    const Measurement measurement = measure_file(options, request);
+    write_measurement(options.output, measurement);
+    write_json(common.json, {{"model", model_name(measurement.model)},
+                             {"rows", measurement.rows.size()},
+                             {"hemispherical", measurement.hemispherical},
+                             {"bands",
+                              {{"from_nm", measurement.bands.from_nm},
+                               {"to_nm", measurement.bands.to_nm()},
+                               {"step_nm", measurement.bands.step_nm}}},
+                             {"notes", measurement.notes}});
+    if (!common.quiet) {
+        fmt::print("{}: {} rows, model {}\n", options.output.string(), measurement.rows.size(),
+                   model_name(measurement.model));
+        for (const std::string& note : measurement.notes) {
+            fmt::print("{}\n", note);
+        }
+    }
+    return 0;
+}
+
+} // namespace
+
+void add_measure_command(CLI::App& program, CommandContext& context) {
+    auto options = std::make_shared<MeasureOptions>();
+    CLI::App* const command = program.add_subcommand(
+        "measure", "Measures a material with a virtual bispectral goniophotometer");
+    command->add_option("MATERIAL", options->material, "TOML file with one [material]")->required();
+    command->add_option("-o,--output", options->output, "CSV file to write")->required();
+    command->add_option("--theta-i", options->theta_i, "incident angles, degrees: 0,45")
+        ->delimiter(',');
+    command->add_option("--theta-o", options->theta_o, "outgoing angles, degrees: 5,20,60")
+        ->delimiter(',');
+    command
+        ->add_option("--phi", options->phi,
+                     "azimuths of the outgoing from the incident direction; 180 is the mirror side")
+        ->delimiter(',');
+    command->add_flag("--hemispherical", options->hemispherical,
+                      "directional-hemispherical matrix instead of the BRDF");
+    command->add_option("--model", options->model, "auto, adding or weidlich-wilkie");
+    command->add_option("--bands", options->bands,
+                        "FROM:TO:STEP of band centres in nm; default: the matrix's own grid");
+    command->add_option("--samples", options->samples, "paths per theta-i (model walk only)")
+        ->check(CLI::NonNegativeNumber);
+    command->footer("Example: reradiant measure lacquer.toml -o lacquer.csv --theta-i 45 "
+                    "--theta-o 0,20,60 --phi 180");
+    command->callback(
+        [options, &context] { context.exit_code = run_measure(*options, context.common); });
+}
+
+} // namespace reradiant
