@@ -212,7 +212,7 @@ CsvBody read_long(TextReader& reader) {
 
 ReradiationMatrix assemble(const CsvHeader& header, CsvBody body) {
     const auto spacing = [](const std::vector<PlacedWavelength>& axis) {
-        return axis.size() > 1 ? axis[1].nm - axis[0].nm : 1.0;
+        return axis.size() > 1 && axis[1].nm > axis[0].nm ? axis[1].nm - axis[0].nm : 1.0;
     };
     ReradiationMatrix matrix;
     // An axis of one band is as wide as it says, else as the other axis's bands.

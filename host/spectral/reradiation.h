@@ -26,7 +26,7 @@ struct ReradiationMatrix {
     Eigen::MatrixXd values; ///< (emission.count, excitation.count)
     MatrixKind kind = MatrixKind::Model;
     bool anti_stokes_allowed = false;
-    std::string geometry; ///< as the file says, e.g. "45/0"; may be empty
+    std::string geometry = {}; ///< as the file says, e.g. "45/0"; may be empty
 
     /// Reflectance: the diagonal at each excitation wavelength that is also an emission centre,
     /// as a table spectrum (linear between, constant outside).

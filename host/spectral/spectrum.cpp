@@ -60,8 +60,8 @@ double gaussian_integral(double centre_nm, double sigma_nm, double from_nm, doub
 }
 
 double blackbody_integral(double kelvin, double from_nm, double to_nm) {
-    // 5 nm panels: 8 points are exact to 1e-13 down to 100 K at 300 nm.
-    const int panels = std::max(1, static_cast<int>(std::ceil((to_nm - from_nm) / 5.0)));
+    // 2.5 nm panels: 8 points are exact to 1e-13 down to 100 K at 300 nm.
+    const int panels = std::max(1, static_cast<int>(std::ceil((to_nm - from_nm) / 2.5)));
     const double width = (to_nm - from_nm) / panels;
     double sum = 0.0;
     for (int panel = 0; panel < panels; ++panel)
