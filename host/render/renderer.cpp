@@ -64,8 +64,13 @@ bool must_stop(const RenderProgress& state, const RenderOptions& options) {
 
 void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables& tables) {
     const WavefrontStatistics& statistics = wavefront.statistics();
-    result.trace_seconds = statistics.trace_seconds;
-    result.shade_seconds = statistics.kernel_seconds;
+    result.stage_seconds = {
+        {"generate", statistics.generate_seconds}, {"intersect", statistics.intersect_seconds},
+        {"shade", statistics.shade_seconds},       {"occlude", statistics.occlude_seconds},
+        {"gather", statistics.gather_seconds},     {"film", statistics.film_seconds}};
+    result.trace_seconds = statistics.intersect_seconds + statistics.occlude_seconds;
+    result.shade_seconds = statistics.generate_seconds + statistics.shade_seconds +
+                           statistics.gather_seconds + statistics.film_seconds;
     result.paths = statistics.paths;
     result.rays = statistics.rays;
     result.build_seconds = result.build.seconds;

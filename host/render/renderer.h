@@ -42,7 +42,10 @@ struct RenderProgress {
 struct RenderResult {
     SpectralImage image;
     std::vector<RenderProgress> passes;
-    double setup_seconds = 0.0, build_seconds = 0.0, trace_seconds = 0.0, shade_seconds = 0.0;
+    double setup_seconds = 0.0, build_seconds = 0.0;
+    double trace_seconds = 0.0; ///< rays on the host
+    double shade_seconds = 0.0; ///< all kernels
+    std::map<std::string, double> stage_seconds;
     double total_seconds = 0.0;
     std::uint32_t samples = 0;
     std::uint64_t paths = 0, rays = 0, non_finite = 0;

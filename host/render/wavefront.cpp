@@ -107,10 +107,10 @@ void Wavefront::generate(const Batch& batch) {
                    batch.first_sample, batch.samples, batch.paths(),
                    static_cast<std::uint32_t>(phases_), settings_.seed);
     generate_.launch(device_, batch.paths());
+    wait_for_kernels(statistics_.generate_seconds);
 }
 
 bool Wavefront::intersect(const Batch& batch, std::uint32_t depth) {
-    wait_for_kernels();
     const auto start = std::chrono::steady_clock::now();
     const auto rays = rays_.map(CL_MAP_READ, 0, batch.paths());
     const auto hits = hits_.map(CL_MAP_WRITE, 0, batch.paths());
@@ -119,7 +119,7 @@ bool Wavefront::intersect(const Batch& batch, std::uint32_t depth) {
     if (active > 0)
         geometry_.intersect(rays.span(), hits.span(), depth == 0, settings_.threads);
     statistics_.rays += static_cast<std::uint64_t>(active);
-    statistics_.trace_seconds += seconds_since(start);
+    statistics_.intersect_seconds += seconds_since(start);
     return active > 0;
 }
 
@@ -130,12 +130,12 @@ void Wavefront::shade(const Batch& batch, std::uint32_t depth) {
                 batch.paths(), capacity_, depth, settings_.max_depth, settings_.min_depth,
                 scene_.sampled_lights, scene_.environment, settings_.seed);
     shade_.launch(device_, batch.paths());
+    wait_for_kernels(statistics_.shade_seconds);
 }
 
 void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
     if (!samples_lights_)
         return;
-    wait_for_kernels();
     const auto start = std::chrono::steady_clock::now();
     const auto rays = shadow_rays_.map(CL_MAP_READ | CL_MAP_WRITE,
                                        static_cast<std::size_t>(depth) * capacity_, batch.paths());
@@ -144,7 +144,7 @@ void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
     if (active > 0)
         geometry_.occlude(rays.span(), settings_.threads);
     statistics_.rays += static_cast<std::uint64_t>(active);
-    statistics_.trace_seconds += seconds_since(start);
+    statistics_.occlude_seconds += seconds_since(start);
 }
 
 void Wavefront::gather(const Batch& batch) {
@@ -152,6 +152,7 @@ void Wavefront::gather(const Batch& batch) {
                  lobe_weights_.buffer(), materials_.buffer(), layers_.buffer(), lights_.buffer(),
                  tables_.buffer(), batch.paths(), capacity_, static_cast<std::uint32_t>(phases_));
     gather_.launch(device_, batch.paths());
+    wait_for_kernels(statistics_.gather_seconds);
 }
 
 void Wavefront::add_to_film(const Batch& batch) {
@@ -159,13 +160,13 @@ void Wavefront::add_to_film(const Batch& batch) {
                film_bands_.buffer(), film_weights_.buffer(), y_weights_.buffer(), batch.first_pixel,
                batch.first_sample, batch.samples, batch.pixels);
     film_.launch(device_, batch.pixels);
-    wait_for_kernels();
+    wait_for_kernels(statistics_.film_seconds);
 }
 
-void Wavefront::wait_for_kernels() {
+void Wavefront::wait_for_kernels(double& stage_seconds) {
     const auto start = std::chrono::steady_clock::now();
     device_.queue().finish();
-    statistics_.kernel_seconds += seconds_since(start);
+    stage_seconds += seconds_since(start);
 }
 
 FilmSums Wavefront::read_film() const {

@@ -14,8 +14,9 @@ namespace reradiant {
 
 /// Where the time went, in seconds, and how much work it was.
 struct WavefrontStatistics {
-    double trace_seconds = 0.0;  ///< Embree, intersections and occlusions
-    double kernel_seconds = 0.0; ///< generate, shade, gather, film
+    double intersect_seconds = 0.0, occlude_seconds = 0.0; ///< Embree, on the host
+    double generate_seconds = 0.0, shade_seconds = 0.0, gather_seconds = 0.0,
+           film_seconds = 0.0; ///< kernels
     std::uint64_t paths = 0;
     std::uint64_t rays = 0; ///< camera, path and shadow rays that were traced
 };
@@ -55,7 +56,7 @@ private:
     void occlude(const Batch& batch, std::uint32_t depth);
     void gather(const Batch& batch);
     void add_to_film(const Batch& batch);
-    void wait_for_kernels();
+    void wait_for_kernels(double& stage_seconds);
 
     const Device& device_;
     const Geometry& geometry_;
