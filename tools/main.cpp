@@ -20,23 +20,13 @@ constexpr int exit_failure = 1;
 constexpr int exit_bad_input = 2;
 
 void add_commands(CLI::App& program, CommandContext& context) {
-#ifdef RERADIANT_HAS_RENDER
     add_render_command(program, context);
-#endif
-#ifdef RERADIANT_HAS_MEASURE
     add_measure_command(program, context);
-#endif
     add_compare_command(program, context);
-#ifdef RERADIANT_HAS_VALIDATE
     add_validate_command(program, context);
-#endif
     add_info_command(program, context);
-#ifdef RERADIANT_HAS_CONVERT
     add_convert_command(program, context);
-#endif
-#ifdef RERADIANT_HAS_DEVICES
     add_devices_command(program, context);
-#endif
 }
 
 void add_common_options(CLI::App& command, CommonOptions& common) {
