@@ -125,7 +125,8 @@ void scale_symmetric(Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
             break;
         }
     }
-    matrix = (d.asDiagonal() * matrix * d.asDiagonal()).eval();
+    const Eigen::MatrixXd scaled = d.asDiagonal() * matrix * d.asDiagonal();
+    matrix = 0.5 * (scaled + scaled.transpose()); // the two products round differently
 }
 
 InterfaceOperator empty_interface_operator(const RoughInterface& interface) {

@@ -18,21 +18,33 @@ bool is_rough_interface(const StackValues& stack, std::size_t index) {
 
 namespace {
 
-/// Calls visit(q, weight) for a quadrature over the invariant q = n^2 sin^2 between sorted edges,
-/// with nodes gathered at both ends of each piece, where transmission may start as a square root.
+/// Nodes on [0, 1] gathered at both ends, where transmission may start as a square root; weights
+/// that sum to 1 exactly, so that lossless media lose nothing to the rule.
+Quadrature end_gathered_rule() {
+    const Quadrature& rule = gauss_legendre(6);
+    Quadrature gathered;
+    double total = 0.0;
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+        const double u = 0.5 * std::numbers::pi * rule.nodes[i];
+        gathered.nodes.push_back(std::sin(u) * std::sin(u));
+        gathered.weights.push_back(rule.weights[i] * std::sin(2.0 * u));
+        total += gathered.weights.back();
+    }
+    for (double& weight : gathered.weights) {
+        weight /= total;
+    }
+    return gathered;
+}
+
+/// Calls visit(q, weight) for a quadrature over the invariant q = n^2 sin^2 between the edges.
 template <typename Visit>
 void integrate_invariant(std::vector<double> edges, const Visit& visit) {
-    const Quadrature& rule = gauss_legendre(6);
+    static const Quadrature rule = end_gathered_rule();
     std::sort(edges.begin(), edges.end());
     for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
         const double width = edges[k + 1] - edges[k];
-        if (width < 1e-15) {
-            continue;
-        }
-        for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-            const double s = std::sin(0.5 * std::numbers::pi * rule.nodes[i]);
-            const double c = std::cos(0.5 * std::numbers::pi * rule.nodes[i]);
-            visit(edges[k] + width * s * s, rule.weights[i] * std::numbers::pi * s * c * width);
+        for (std::size_t i = 0; width > 1e-15 && i < rule.nodes.size(); ++i) {
+            visit(edges[k] + width * rule.nodes[i], rule.weights[i] * width);
         }
     }
 }
