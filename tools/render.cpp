@@ -67,6 +67,7 @@ nlohmann::ordered_json statistics_json(const RenderResult& result, const Device&
           {"trace", result.trace_seconds},
           {"shade", result.shade_seconds},
           {"total", result.total_seconds}}},
+        {"stage_seconds", result.stage_seconds},
         {"paths", result.paths},
         {"rays", result.rays},
         {"paths_per_second", rendering > 0.0 ? static_cast<double>(result.paths) / rendering : 0.0},

@@ -3,9 +3,12 @@
 #include "host/spectral/colour.h"
 #include "kernels/features.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace reradiant {
 
@@ -13,29 +16,47 @@ namespace {
 
 /// What one pixel holds, lanes added to bands, in double.
 struct PixelSums {
+    explicit PixelSums(int bands)
+        : sum(static_cast<std::size_t>(bands)), alternating(sum.size()), squares(sum.size()) {}
+
+    void read(const FilmSums& film, const FilmLayout& layout, std::size_t pixel) {
+        for (auto* row : {&sum, &alternating, &squares})
+            std::fill(row->begin(), row->end(), 0.0);
+        const float* base = film.sums.data() + pixel * layout.floats_per_pixel();
+        const auto lanes = static_cast<std::size_t>(layout.lanes);
+        for (std::size_t column = 0; column < layout.columns.size(); ++column) {
+            if (layout.columns[column].band < 0)
+                continue;
+            const auto b = static_cast<std::size_t>(layout.columns[column].band);
+            const double weight = layout.columns[column].weight;
+            // The compensation holds what the sum is too large by (kernels/film.cl).
+            sum[b] += weight * (static_cast<double>(base[column]) -
+                                static_cast<double>(base[lanes + column]));
+            alternating[b] += weight * static_cast<double>(base[2 * lanes + column]);
+            if (layout.band_variance)
+                squares[b] += static_cast<double>(base[3 * lanes + column]);
+        }
+    }
+
     std::vector<double> sum, alternating, squares;
 };
 
-PixelSums read_pixel(const FilmSums& film, const FilmLayout& layout, std::size_t pixel, int bands) {
-    const auto count = static_cast<std::size_t>(bands);
-    PixelSums result{std::vector<double>(count), std::vector<double>(count),
-                     std::vector<double>(count)};
-    const float* base = film.sums.data() + pixel * layout.floats_per_pixel();
-    const auto lanes = static_cast<std::size_t>(layout.lanes);
-    for (std::size_t column = 0; column < layout.columns.size(); ++column) {
-        const int band = layout.columns[column].band;
-        const double weight = layout.columns[column].weight;
-        if (band < 0)
-            continue;
-        const auto b = static_cast<std::size_t>(band);
-        // The compensation holds what the sum is too large by (kernels/film.cl).
-        result.sum[b] += weight * (static_cast<double>(base[column]) -
-                                   static_cast<double>(base[lanes + column]));
-        result.alternating[b] += weight * static_cast<double>(base[2 * lanes + column]);
-        if (layout.band_variance)
-            result.squares[b] += static_cast<double>(base[3 * lanes + column]);
-    }
-    return result;
+/// Rows of work: large enough to share out, small enough for both cores.
+constexpr std::size_t pixels_at_once = 1024;
+
+/// Calls visit(pixel, sums, chunk) for every pixel, chunks of pixels in parallel.
+template <typename Visit>
+void for_each_pixel(const FilmSums& film, const FilmLayout& layout, std::size_t pixels, int bands,
+                    const Visit& visit) {
+    const std::size_t chunks = (pixels + pixels_at_once - 1) / pixels_at_once;
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+        PixelSums sums(bands);
+        const std::size_t end = std::min(pixels, (chunk + 1) * pixels_at_once);
+        for (std::size_t pixel = chunk * pixels_at_once; pixel < end; ++pixel) {
+            sums.read(film, layout, pixel);
+            visit(pixel, sums, chunk);
+        }
+    });
 }
 
 double accepted(const FilmSums& film, std::size_t pixel, std::uint32_t samples) {
@@ -47,6 +68,12 @@ double variance_of_mean(double sum, double sum_of_squares, double n) {
         return 0.0;
     const double mean = sum / n;
     return std::max(0.0, sum_of_squares / n - mean * mean) / (n - 1.0);
+}
+
+double luminance_variance(const FilmSums& film, std::size_t pixel, double n) {
+    const float* y = film.statistics.data() + pixel * film_statistics_per_pixel;
+    return variance_of_mean(static_cast<double>(y[0]) - static_cast<double>(y[2]),
+                            static_cast<double>(y[1]) - static_cast<double>(y[3]), n);
 }
 
 } // namespace
@@ -98,48 +125,57 @@ SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int w
     image.height = height;
     image.bands = bands;
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    image.values.reserve(pixels * static_cast<std::size_t>(bands.count));
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-        const PixelSums sums = read_pixel(film, layout, pixel, bands.count);
-        const double n = accepted(film, pixel, samples);
-        const double scale = n > 0.0 ? 1.0 / n : 0.0;
-        for (std::size_t b = 0; b < sums.sum.size(); ++b) {
-            image.values.push_back(static_cast<float>(sums.sum[b] * scale));
-            if (layout.band_variance)
-                image.variance_bands.push_back(
-                    static_cast<float>(variance_of_mean(sums.sum[b], sums.squares[b], n)));
-        }
-        const float* y = film.statistics.data() + pixel * film_statistics_per_pixel;
-        image.sample_count.push_back(static_cast<float>(n));
-        image.variance_y.push_back(static_cast<float>(
-            variance_of_mean(static_cast<double>(y[0]) - static_cast<double>(y[2]),
-                             static_cast<double>(y[1]) - static_cast<double>(y[3]), n)));
-    }
+    const auto count = static_cast<std::size_t>(bands.count);
+    image.values.resize(pixels * count);
+    image.variance_bands.resize(layout.band_variance ? pixels * count : 0);
+    image.sample_count.resize(pixels);
+    image.variance_y.resize(pixels);
+    for_each_pixel(
+        film, layout, pixels, bands.count,
+        [&](std::size_t pixel, const PixelSums& sums, std::size_t) {
+            const double n = accepted(film, pixel, samples);
+            const double scale = n > 0.0 ? 1.0 / n : 0.0;
+            for (std::size_t b = 0; b < count; ++b)
+                image.values[pixel * count + b] = static_cast<float>(sums.sum[b] * scale);
+            for (std::size_t b = 0; layout.band_variance && b < count; ++b)
+                image.variance_bands[pixel * count + b] =
+                    static_cast<float>(variance_of_mean(sums.sum[b], sums.squares[b], n));
+            image.sample_count[pixel] = static_cast<float>(n);
+            image.variance_y[pixel] = static_cast<float>(luminance_variance(film, pixel, n));
+        });
     return image;
 }
 
-double estimated_relmse(const FilmSums& film, const FilmLayout& layout, const SpectralImage& image,
+double estimated_relmse(const FilmSums& film, const FilmLayout& layout, int bands,
                         std::uint32_t samples) {
     if (samples < 2)
         return std::numeric_limits<double>::infinity();
-    double mean = 0.0;
-    for (const float value : image.values)
-        mean += static_cast<double>(value) / static_cast<double>(image.values.size());
+    const std::size_t pixels = film.statistics.size() / film_statistics_per_pixel;
+    // Sums by chunk, added in order: the result does not depend on threads.
+    std::vector<double> parts(pixels / pixels_at_once + 1, 0.0);
+    for_each_pixel(film, layout, pixels, bands,
+                   [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
+                       const double n = accepted(film, pixel, samples);
+                       for (const double sum : sums.sum)
+                           parts[chunk] += n > 0.0 ? sum / n : 0.0;
+                   });
+    const double count = static_cast<double>(pixels) * bands;
+    const double mean = std::accumulate(parts.begin(), parts.end(), 0.0) / count;
     const double floor = 0.01 * mean * mean;
-    const auto bands = static_cast<std::size_t>(image.bands.count);
-    double total = 0.0;
-    for (std::size_t pixel = 0; pixel < image.sample_count.size(); ++pixel) {
-        const PixelSums sums = read_pixel(film, layout, pixel, image.bands.count);
-        const double n = accepted(film, pixel, samples);
-        for (std::size_t b = 0; b < bands && n > 0.0; ++b) {
-            const double value = static_cast<double>(image.values[pixel * bands + b]);
-            // With an odd count the even half has one sample more.
-            const double d = sums.alternating[b] / n - (samples % 2 == 1 ? value / n : 0.0);
-            if (value * value + floor > 0.0)
-                total += d * d / (value * value + floor);
-        }
-    }
-    return total / static_cast<double>(image.values.size());
+    std::fill(parts.begin(), parts.end(), 0.0);
+    for_each_pixel(film, layout, pixels, bands,
+                   [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
+                       const double n = accepted(film, pixel, samples);
+                       for (std::size_t b = 0; b < sums.sum.size() && n > 0.0; ++b) {
+                           const double value = sums.sum[b] / n;
+                           // With an odd count the even half has one sample more.
+                           const double d =
+                               (sums.alternating[b] - (samples % 2 == 1 ? value : 0.0)) / n;
+                           if (value * value + floor > 0.0)
+                               parts[chunk] += d * d / (value * value + floor);
+                       }
+                   });
+    return std::accumulate(parts.begin(), parts.end(), 0.0) / count;
 }
 
 } // namespace reradiant

@@ -4,6 +4,7 @@
 #include "host/render/wavelength_plan.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace reradiant {
@@ -27,10 +28,10 @@ constexpr std::size_t film_statistics_per_pixel = 5;
 
 FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool force_scatter);
 
-/// Sums of all samples, as read from the device.
+/// Sums of all samples where the device keeps them.
 struct FilmSums {
-    std::vector<float> sums;       ///< [pixel][row][column], see kernels/film.cl
-    std::vector<float> statistics; ///< [pixel][5]
+    std::span<const float> sums;       ///< [pixel][row][column], see kernels/film.cl
+    std::span<const float> statistics; ///< [pixel][5]
     std::uint64_t refused() const;
 };
 
@@ -41,7 +42,7 @@ SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int w
 /// Estimated relMSE of the mean image against the truth, as `compare` defines it: the mean of
 /// d^2 / (ref^2 + 0.01 mean(ref)^2) with d from the difference of the even and the odd samples'
 /// halves, which has the variance of the mean. Infinite below two samples.
-double estimated_relmse(const FilmSums& film, const FilmLayout& layout, const SpectralImage& image,
+double estimated_relmse(const FilmSums& film, const FilmLayout& layout, int bands,
                         std::uint32_t samples);
 
 } // namespace reradiant

@@ -97,8 +97,8 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
     const std::uint64_t paths =
         options.batch_paths * (depth * (sizeof(VertexRecord) + sizeof(RayRecord)) + lanes * 4 +
                                sizeof(RayRecord) + sizeof(HitRecord) + sizeof(PathState));
-    // The film is on the device and, while it is read, on the host; the image is written once.
-    return 2 * film + 2 * image + paths;
+    // The film is mapped where it is; the image is held once more while it is written.
+    return film + 2 * image + paths;
 }
 
 RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
@@ -126,15 +126,18 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
         wavefront.render_pass(options.first_sample + state.samples, samples);
         state.samples += samples;
         state.seconds = seconds_since(rendering);
-        const FilmSums film = wavefront.read_film();
-        result.image = resolve_film(film, layout, scene.film.width, scene.film.height,
-                                    result.plan.film, state.samples);
-        result.non_finite = film.refused();
-        state.relmse = estimated_relmse(film, layout, result.image, state.samples);
+        wavefront.with_film([&](const FilmSums& film) {
+            state.relmse = estimated_relmse(film, layout, result.plan.film.count, state.samples);
+        });
         result.passes.push_back(state);
         if (progress && !progress(state))
             break;
     }
+    wavefront.with_film([&](const FilmSums& film) {
+        result.image = resolve_film(film, layout, scene.film.width, scene.film.height,
+                                    result.plan.film, state.samples);
+        result.non_finite = film.refused();
+    });
     result.samples = state.samples;
     result.relmse = state.relmse;
     collect(result, wavefront, tables);

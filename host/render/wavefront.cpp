@@ -169,15 +169,12 @@ void Wavefront::wait_for_kernels(double& stage_seconds) {
     stage_seconds += seconds_since(start);
 }
 
-FilmSums Wavefront::read_film() const {
-    FilmSums film;
+void Wavefront::with_film(const std::function<void(const FilmSums&)>& use) const {
     opencl_checked("reading the film", [&] {
         const auto sums = film_sums_.map(CL_MAP_READ, 0, film_sums_.size());
         const auto statistics = film_statistics_.map(CL_MAP_READ, 0, film_statistics_.size());
-        film.sums.assign(sums.span().begin(), sums.span().end());
-        film.statistics.assign(statistics.span().begin(), statistics.span().end());
+        use({sums.span(), statistics.span()});
     });
-    return film;
 }
 
 std::size_t Wavefront::device_bytes() const {

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 namespace reradiant {
 
@@ -38,7 +39,8 @@ public:
     /// Adds samples [first_sample, first_sample + samples) of every pixel to the film.
     void render_pass(std::uint32_t first_sample, std::uint32_t samples);
 
-    FilmSums read_film() const;
+    /// Calls `use` with the film's sums as they are on the device, mapped for the call.
+    void with_film(const std::function<void(const FilmSums&)>& use) const;
     const WavefrontStatistics& statistics() const { return statistics_; }
     std::size_t device_bytes() const;
 
