@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <cmath>
 
@@ -144,12 +145,15 @@ InterfaceOperator compute_interface_operator(const RoughInterface& interface) {
     const int cells = op.above.cells() + op.below.cells();
     op.exchange.resize(cells, cells);
     Eigen::VectorXd lobes(cells);
-    tbb::parallel_for(tbb::blocked_range<int>(0, cells, 1), [&](const auto& range) {
-        Eigen::VectorXd column(cells);
-        for (int j = range.begin(); j != range.end(); ++j) {
-            lobes(j) = estimate_column(op, j, column);
-            op.exchange.col(j) = column;
-        }
+    // isolated: a caller's own parallel loop must not be entered here, while the store is locked
+    tbb::this_task_arena::isolate([&] {
+        tbb::parallel_for(tbb::blocked_range<int>(0, cells, 1), [&](const auto& range) {
+            Eigen::VectorXd column(cells);
+            for (int j = range.begin(); j != range.end(); ++j) {
+                lobes(j) = estimate_column(op, j, column);
+                op.exchange.col(j) = column;
+            }
+        });
     });
     op.first_lobe = lobes.head(op.above.cells());
     const Eigen::VectorXd e = op.etendue();

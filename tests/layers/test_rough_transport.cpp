@@ -5,6 +5,7 @@
 #include "tests/layers/reference_walk.h"
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include <cmath>
 
@@ -206,4 +207,17 @@ TEST(RoughTransport, ThickAndThinSlabsStayFiniteAndOrdered) {
         before = t->transmission(1.0);
     }
     EXPECT_LT(before, 1e-40);
+}
+
+TEST(RoughTransport, MayBeAskedFromParallelLoops) {
+    std::array<double, 16> found{};
+    tbb::parallel_for(0, 16, [&](int k) {
+        found[static_cast<std::size_t>(k)] =
+            adding_transport({rough(1.5, k % 2 == 0 ? 0.33 : 0.44, Distribution::Ggx,
+                                    Scattering::Single, 0.01 * k)})
+                ->transmission(1.0);
+    });
+    for (std::size_t k = 2; k < found.size(); k += 2) {
+        EXPECT_LT(found[k], found[k - 2]);
+    }
 }
