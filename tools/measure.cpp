@@ -1,11 +1,14 @@
 #include "host/measure/measure.h"
 #include "host/error.h"
+#include "host/paths.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
 #include "tools/parse_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 
 namespace reradiant {
@@ -14,20 +17,34 @@ namespace {
 
 struct MeasureOptions {
     std::filesystem::path material, output;
+    std::string preset;
     std::vector<double> theta_i{0.0}, theta_o{0.0}, phi{0.0};
     bool hemispherical = false;
     std::string model = "auto", bands;
     long samples = 0;
 };
 
+std::filesystem::path material_file(const MeasureOptions& options) {
+    if (options.preset.empty()) {
+        return options.material;
+    }
+    const std::vector<std::string> known = preset_names();
+    if (std::find(known.begin(), known.end(), options.preset) == known.end()) {
+        throw_input_error({}, fmt::format("no preset is called '{}'", options.preset),
+                          fmt::format("there are: {}", fmt::join(known, ", ")));
+    }
+    return spectra_directory() / "materials" / (options.preset + ".toml");
+}
+
 /// Errors of meaning have no place of their own: they are placed at the material's file.
 Measurement measure_file(const MeasureOptions& options, const MeasureRequest& request) {
-    const Material material = load_material(options.material);
+    const std::filesystem::path file = material_file(options);
+    const Material material = load_material(file);
     try {
         return measure_material(material, request);
     } catch (const Error& error) {
         if (error.kind() == Error::Kind::Input && error.position().file.empty()) {
-            throw_input_error({options.material.string()}, error.what());
+            throw_input_error({file.string()}, error.what());
         }
         throw;
     }
@@ -70,7 +87,10 @@ void add_measure_command(CLI::App& program, CommandContext& context) {
     auto options = std::make_shared<MeasureOptions>();
     CLI::App* const command = program.add_subcommand(
         "measure", "Measures a material with a virtual bispectral goniophotometer");
-    command->add_option("MATERIAL", options->material, "TOML file with one [material]")->required();
+    CLI::Option_group* const source = command->add_option_group("material");
+    source->require_option(1);
+    source->add_option("MATERIAL", options->material, "TOML file with one [material]");
+    source->add_option("--preset", options->preset, "a material of spectra/materials by name");
     command->add_option("-o,--output", options->output, "CSV file to write")->required();
     command->add_option("--theta-i", options->theta_i, "incident angles, degrees: 0,45")
         ->delimiter(',');

@@ -92,17 +92,6 @@ Substrate read_substrate(const TableReader& material, LoadState& state) {
     return substrate;
 }
 
-std::vector<std::string> preset_names() {
-    std::vector<std::string> names;
-    std::error_code ignored;
-    for (fs::directory_iterator entry(spectra_directory() / "materials", ignored), end;
-         entry != end; entry.increment(ignored))
-        if (entry->path().extension() == ".toml")
-            names.push_back(entry->path().stem().string());
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
 Material read_preset(const toml::table& table, const std::string& file, MaterialPlace place,
                      LoadState& state) {
     const TableReader reader(table, file, "a material with a preset", {"name", "preset"});
@@ -125,6 +114,17 @@ Material read_preset(const toml::table& table, const std::string& file, Material
 }
 
 } // namespace
+
+std::vector<std::string> preset_names() {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (fs::directory_iterator entry(spectra_directory() / "materials", ignored), end;
+         entry != end; entry.increment(ignored))
+        if (entry->path().extension() == ".toml")
+            names.push_back(entry->path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
 
 Material read_material(const toml::table& table, const std::string& file, MaterialPlace place,
                        LoadState& state) {

@@ -131,6 +131,9 @@ struct Scene {
 /// Error at their place. Warnings go to the log.
 Scene load_scene(const std::filesystem::path& file);
 
+/// Names that `preset = "..."` takes, sorted: the files of spectra/materials.
+std::vector<std::string> preset_names();
+
 /// Reads a MATERIAL.toml with one [material].
 Material load_material(const std::filesystem::path& file);
 
