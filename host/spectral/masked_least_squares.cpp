@@ -1,10 +1,8 @@
 #include "host/spectral/masked_least_squares.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <functional>
 
 namespace reradiant {
 
@@ -13,171 +11,117 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-Matrix below_diagonal(const Matrix& square) {
-    return square.triangularView<Eigen::StrictlyLower>();
-}
-
-/// Entries that a step takes below zero stop at zero and are no longer free.
-void pin(const Matrix& factor, const Matrix& step, Matrix& free, Matrix& pinned) {
-    for (Eigen::Index j = 0; j < factor.size(); ++j) {
-        if (free.data()[j] > 0.0 && factor.data()[j] + step.data()[j] < 0.0) {
-            free.data()[j] = 0.0;
-            pinned.data()[j] = -factor.data()[j];
-        }
-    }
-}
+constexpr double exact_relative_cost = 1e-18; ///< relative error 1e-9: nothing left to gain
+constexpr int most_attempts = 10;             ///< raises of the damping within a step
 
 /// Makes both columns of each term equally long, which conditions the joint problem best.
-void balance_terms(Matrix& emission, Matrix& excitation) {
-    for (Eigen::Index k = 0; k < emission.cols(); ++k) {
-        const double e = emission.col(k).norm(), x = excitation.col(k).norm();
+void balance_terms(FactorPair& factors) {
+    for (Eigen::Index k = 0; k < factors.emission.cols(); ++k) {
+        const double e = factors.emission.col(k).norm(), x = factors.excitation.col(k).norm();
         if (e > 0.0 && x > 0.0) {
             const double ratio = std::sqrt(x / e);
-            emission.col(k) *= ratio;
-            excitation.col(k) /= ratio;
+            factors.emission.col(k) *= ratio;
+            factors.excitation.col(k) /= ratio;
         }
     }
 }
 
-/// One factor's entries that may move: not held at zero by a gradient that points below it.
+FactorPair clipped(const FactorPair& factors) {
+    return {factors.emission.cwiseMax(0.0), factors.excitation.cwiseMax(0.0)};
+}
+
+FactorPair moved(const FactorPair& factors, const FactorPair& scale, const FactorPair& step) {
+    return {factors.emission + scale.emission.cwiseProduct(step.emission),
+            factors.excitation + scale.excitation.cwiseProduct(step.excitation)};
+}
+
+/// Derivatives of half the cost by every entry.
+FactorPair gradient_of(const FactorPair& factors, const Matrix& residual) {
+    return {residual * factors.excitation, residual.transpose() * factors.emission};
+}
+
+/// Entry size at which a term alone would carry its row (emission) or column (excitation).
+FactorPair natural_scale(const FactorPair& factors, const Vector& row_norm,
+                         const Vector& column_norm) {
+    const Eigen::Index n = factors.emission.rows(), rank = factors.emission.cols();
+    FactorPair scale{Matrix::Zero(n, rank), Matrix::Zero(n, rank)};
+    for (Eigen::Index k = 0; k < rank; ++k) {
+        double below = 0.0, above = 0.0;
+        for (Eigen::Index o = 0; o < n; ++o) {
+            if (below > 0.0)
+                scale.emission(o, k) = row_norm(o) / std::sqrt(below);
+            below += factors.excitation(o, k) * factors.excitation(o, k);
+        }
+        for (Eigen::Index i = n - 1; i >= 0; --i) {
+            if (above > 0.0)
+                scale.excitation(i, k) = column_norm(i) / std::sqrt(above);
+            above += factors.emission(i, k) * factors.emission(i, k);
+        }
+    }
+    return scale;
+}
+
+/// Penalty on negative entries, in natural units: weight(o) * min(entry / scale, 0)^2.
+struct Penalty {
+    FactorPair scale;
+    Vector row_weight, column_weight;
+
+    static Matrix violation(const Matrix& factor, const Matrix& scale) {
+        return (scale.array() > 0.0).select(factor.array().min(0.0) / scale.array(), 0.0);
+    }
+    double cost(const FactorPair& factors) const {
+        return row_weight.dot(violation(factors.emission, scale.emission).rowwise().squaredNorm()) +
+               column_weight.dot(
+                   violation(factors.excitation, scale.excitation).rowwise().squaredNorm());
+    }
+    FactorPair gradient(const FactorPair& factors) const {
+        return {row_weight.asDiagonal() * violation(factors.emission, scale.emission),
+                column_weight.asDiagonal() * violation(factors.excitation, scale.excitation)};
+    }
+    FactorPair curvature(const FactorPair& factors) const {
+        return {row_weight.asDiagonal() * Matrix((factors.emission.array() < 0.0).cast<double>()),
+                column_weight.asDiagonal() *
+                    Matrix((factors.excitation.array() < 0.0).cast<double>())};
+    }
+};
+
+/// One Levenberg-Marquardt step: raises the damping until `cost_of` the step's end (passed through
+/// `project`) falls below `cost_now`. False, and nothing moved, when it never does.
+template <typename Added, typename Project, typename Cost>
+bool damped_step(FactorPair& factors, const FactorPair& scale, const FactorPair& gradient,
+                 double cost_now, double& damping, Added added, Project project, Cost cost_of) {
+    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+        const FactorPair step = solve_normal_equations(factors, scale, added(damping), gradient);
+        const FactorPair trial = project(moved(factors, scale, step));
+        const bool improved = cost_of(trial) < cost_now;
+        damping *= improved ? 0.25 : 4.0;
+        if (improved) {
+            factors = trial;
+            return true;
+        }
+    }
+    return false;
+}
+
+/// 1 for entries that may move, 0 for those held at zero by a gradient that points below it.
 Matrix free_entries(const Matrix& factor, const Matrix& gradient) {
     return ((factor.array() > 0.0) || (gradient.array() < 0.0)).cast<double>();
 }
 
-/// One damped Gauss-Newton step in all entries that are free. The normal equations have one small
-/// block per emission band; those are eliminated, which leaves a system in the excitation only.
-class DampedStep {
-public:
-    DampedStep(const Matrix& emission, const Matrix& excitation, const Matrix& residual)
-        : e_(emission), x_(excitation), n_(emission.rows()), rank_(emission.cols()),
-          residual_(residual) {
-        gradient_e_ = residual * x_;
-        gradient_x_ = residual.transpose() * e_;
-        free_e_ = free_entries(e_, gradient_e_);
-        free_x_ = free_entries(x_, gradient_x_);
-    }
-
-    /// Step to the bounded minimum of the damped quadratic model, nearly: entries that would
-    /// turn negative are set to zero and the others solved again, a few times.
-    void solve_bounded(double damping, Matrix& step_e, Matrix& step_x) {
-        constexpr int rounds = 5;
-        const Matrix free_e = free_e_, free_x = free_x_;
-        const Matrix gradient_e = gradient_e_, gradient_x = gradient_x_;
-        Matrix pinned_e = Matrix::Zero(n_, rank_), pinned_x = pinned_e;
-        for (int round = 0; round < rounds; ++round) {
-            solve(damping, step_e, step_x);
-            step_e = step_e.cwiseProduct(free_e_) + pinned_e;
-            step_x = step_x.cwiseProduct(free_x_) + pinned_x;
-            if (((e_ + step_e).array() >= 0.0).all() && ((x_ + step_x).array() >= 0.0).all())
-                break;
-            pin(e_, step_e, free_e_, pinned_e);
-            pin(x_, step_x, free_x_, pinned_x);
-            const Matrix moved =
-                residual_ + below_diagonal(pinned_e * x_.transpose() + e_ * pinned_x.transpose());
-            gradient_e_ = moved * x_;
-            gradient_x_ = moved.transpose() * e_;
-        }
-        free_e_ = free_e;
-        free_x_ = free_x;
-        gradient_e_ = gradient_e;
-        gradient_x_ = gradient_x;
-    }
-
-    /// Largest entry of the gradient among free entries.
-    double gradient_size() const {
-        return std::max(gradient_e_.cwiseProduct(free_e_).cwiseAbs().maxCoeff(),
-                        gradient_x_.cwiseProduct(free_x_).cwiseAbs().maxCoeff());
-    }
-
-    void solve(double damping, Matrix& step_e, Matrix& step_x) const {
-        Matrix schur = excitation_blocks(damping);
-        Vector right = Vector::Zero(n_ * rank_);
-        for (Eigen::Index i = 0; i < n_; ++i)
-            right.segment(i * rank_, rank_) =
-                -gradient_x_.row(i).cwiseProduct(free_x_.row(i)).transpose();
-        std::vector<Matrix> eliminated(static_cast<std::size_t>(n_));
-        std::vector<Vector> eliminated_right(static_cast<std::size_t>(n_));
-        Matrix sum_xx = Matrix::Zero(rank_, rank_);
-        std::vector<Eigen::LLT<Matrix>> blocks(static_cast<std::size_t>(n_));
-        for (Eigen::Index o = 0; o < n_; ++o) {
-            const auto at = static_cast<std::size_t>(o);
-            blocks[at].compute(masked_block(sum_xx, free_e_.row(o), damping));
-            eliminated[at] = blocks[at].matrixL().solve(coupling(o));
-            eliminated_right[at] = blocks[at].matrixL().solve(
-                -gradient_e_.row(o).cwiseProduct(free_e_.row(o)).transpose());
-            const Eigen::Index size = o * rank_;
-            schur.topLeftCorner(size, size)
-                .selfadjointView<Eigen::Lower>()
-                .rankUpdate(eliminated[at].transpose(), -1.0);
-            right.head(size).noalias() -= eliminated[at].transpose() * eliminated_right[at];
-            sum_xx += x_.row(o).transpose() * x_.row(o);
-        }
-        const Vector solution = schur.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-        step_x = Eigen::Map<const Matrix>(solution.data(), rank_, n_).transpose();
-        step_e.resize(n_, rank_);
-        for (Eigen::Index o = 0; o < n_; ++o) {
-            const auto at = static_cast<std::size_t>(o);
-            step_e.row(o) =
-                blocks[at]
-                    .matrixU()
-                    .solve(eliminated_right[at] - eliminated[at] * solution.head(o * rank_))
-                    .transpose();
-        }
-    }
-
-private:
-    /// A diagonal block with the rows and columns of held entries replaced by the identity.
-    Matrix masked_block(const Matrix& block, const Eigen::RowVectorXd& free, double damping) const {
-        Matrix masked = free.asDiagonal() * block * free.asDiagonal();
-        masked.diagonal().array() += damping + (1.0 - free.transpose().array());
-        return masked;
-    }
-
-    Matrix excitation_blocks(double damping) const {
-        Matrix blocks = Matrix::Zero(n_ * rank_, n_ * rank_);
-        Matrix sum_ee = Matrix::Zero(rank_, rank_);
-        for (Eigen::Index i = n_ - 1; i >= 0; --i) {
-            blocks.block(i * rank_, i * rank_, rank_, rank_) =
-                masked_block(sum_ee, free_x_.row(i), damping);
-            sum_ee += e_.row(i).transpose() * e_.row(i);
-        }
-        return blocks;
-    }
-
-    /// Second derivatives between emission band o and every excitation band below it:
-    /// rank x (o * rank).
-    Matrix coupling(Eigen::Index o) const {
-        Matrix result(rank_, o * rank_);
-        for (Eigen::Index i = 0; i < o; ++i)
-            result.middleCols(i * rank_, rank_) =
-                free_e_.row(o).cwiseProduct(x_.row(i)).transpose() *
-                free_x_.row(i).cwiseProduct(e_.row(o));
-        return result;
-    }
-
-    const Matrix &e_, &x_;
-    Eigen::Index n_, rank_;
-    const Matrix& residual_;
-    Matrix gradient_e_, gradient_x_, free_e_, free_x_;
-};
-
 } // namespace
 
-Matrix MaskedLeastSquares::residual(const Matrix& emission, const Matrix& excitation) const {
-    return below_diagonal(emission * excitation.transpose() - target);
+Matrix MaskedLeastSquares::residual(const FactorPair& factors) const {
+    const Matrix difference = factors.emission * factors.excitation.transpose() - target;
+    return difference.triangularView<Eigen::StrictlyLower>();
 }
 
-double MaskedLeastSquares::cost(const Matrix& emission, const Matrix& excitation) const {
-    return residual(emission, excitation).squaredNorm();
-}
-
-void MaskedLeastSquares::descend(Matrix& emission, Matrix& excitation, int sweeps) const {
+void MaskedLeastSquares::descend(FactorPair& factors, int sweeps) const {
     const Eigen::Index n = target.rows();
-    Matrix rest = -residual(emission, excitation);
+    Matrix rest = -residual(factors);
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-        for (Eigen::Index k = 0; k < emission.cols(); ++k) {
-            auto e = emission.col(k);
-            auto x = excitation.col(k);
+        for (Eigen::Index k = 0; k < factors.emission.cols(); ++k) {
+            auto e = factors.emission.col(k);
+            auto x = factors.excitation.col(k);
             const Vector old_e = e, old_x = x;
             const Vector from_e = rest.triangularView<Eigen::StrictlyLower>() * x;
             double weight = 0.0;
@@ -197,42 +141,67 @@ void MaskedLeastSquares::descend(Matrix& emission, Matrix& excitation, int sweep
     }
 }
 
-void MaskedLeastSquares::polish(Matrix& emission, Matrix& excitation, int most_steps) const {
-    constexpr int stall_window = 12;
-    constexpr double stall_ratio = 0.999, exact = 1e-28;
-    const double whole = below_diagonal(target).squaredNorm();
-    balance_terms(emission, excitation);
-    Matrix rest = residual(emission, excitation);
-    double cost_now = rest.squaredNorm(), cost_before = cost_now;
-    double damping = 1e-2 * std::max(emission.squaredNorm(), excitation.squaredNorm()) /
-                     static_cast<double>(emission.rows() * emission.cols());
-    for (int step = 0; step < most_steps && cost_now > exact * whole && damping < 1e12; ++step) {
-        DampedStep system(emission, excitation, rest);
-        if (!(system.gradient_size() > 0.0))
+void MaskedLeastSquares::approach(FactorPair& factors, int most_steps) const {
+    constexpr double penalty_weight = 0.01, first_damping = 1e-3;
+    constexpr int steps_per_scale = 10;
+    const double whole = target.norm();
+    const Vector row_norm = target.rowwise().norm();
+    const Vector column_norm = target.colwise().norm().transpose();
+    // Between the row's own weight and the whole's, so that faint rows are neither lost nor loud.
+    const Vector row_weight = row_norm * whole, column_weight = column_norm * whole;
+    const Eigen::RowVectorXd ones = Eigen::RowVectorXd::Ones(factors.emission.cols());
+    const double least = 1e-30 * whole * whole;
+    const FactorPair unit_damping{(row_weight.array() + least).matrix() * ones,
+                                  (column_weight.array() + least).matrix() * ones};
+    balance_terms(factors);
+    Penalty penalty{{}, penalty_weight * row_weight, penalty_weight * column_weight};
+    const auto penalised_cost = [&](const FactorPair& trial) {
+        return cost(trial) + penalty.cost(trial);
+    };
+    double damping = first_damping;
+    bool improved = true;
+    for (int step = 0; step < most_steps && improved; ++step) {
+        if (step % steps_per_scale == 0)
+            penalty.scale = natural_scale(clipped(factors), row_norm, column_norm);
+        const double cost_now = penalised_cost(factors);
+        if (cost_now <= exact_relative_cost * whole * whole)
+            break;
+        const FactorPair slope = gradient_of(factors, residual(factors));
+        const FactorPair gradient = moved(penalty.gradient(factors), penalty.scale, slope);
+        const FactorPair curvature = penalty.curvature(factors);
+        const auto added = [&](double amount) -> FactorPair {
+            return {amount * unit_damping.emission + curvature.emission,
+                    amount * unit_damping.excitation + curvature.excitation};
+        };
+        improved = damped_step(factors, penalty.scale, gradient, cost_now, damping, added,
+                               std::identity(), penalised_cost);
+    }
+    factors = clipped(factors);
+}
+
+void MaskedLeastSquares::polish(FactorPair& factors, int most_steps) const {
+    const double exact_cost = exact_relative_cost * target.squaredNorm();
+    balance_terms(factors);
+    double damping = 1e-3 * (factors.emission.squaredNorm() + factors.excitation.squaredNorm()) /
+                     static_cast<double>(factors.emission.size());
+    const auto added = [&](double amount) -> FactorPair {
+        const Matrix all = Matrix::Constant(factors.emission.rows(), factors.emission.cols(),
+                                            std::max(amount, 1e-300));
+        return {all, all};
+    };
+    bool improved = true;
+    for (int step = 0; step < most_steps && improved; ++step) {
+        const Matrix rest = residual(factors);
+        const double cost_now = rest.squaredNorm();
+        if (cost_now <= exact_cost)
             return;
-        Matrix step_e, step_x;
-        bool improved = false;
-        for (int attempt = 0; attempt < 12 && !improved; ++attempt) {
-            system.solve_bounded(damping, step_e, step_x);
-            const Matrix e = (emission + step_e).cwiseMax(0.0);
-            const Matrix x = (excitation + step_x).cwiseMax(0.0);
-            const Matrix trial = residual(e, x);
-            improved = trial.squaredNorm() < cost_now;
-            damping *= improved ? 0.3 : 4.0;
-            if (improved) {
-                emission = e;
-                excitation = x;
-                rest = trial;
-                cost_now = rest.squaredNorm();
-            }
-        }
-        if (!improved)
-            return;
-        if ((step + 1) % stall_window == 0) {
-            if (cost_now > stall_ratio * cost_before)
-                return;
-            cost_before = cost_now;
-        }
+        const FactorPair slope = gradient_of(factors, rest);
+        const FactorPair scale{free_entries(factors.emission, slope.emission),
+                               free_entries(factors.excitation, slope.excitation)};
+        const FactorPair gradient{scale.emission.cwiseProduct(slope.emission),
+                                  scale.excitation.cwiseProduct(slope.excitation)};
+        improved = damped_step(factors, scale, gradient, cost_now, damping, added, clipped,
+                               [&](const FactorPair& trial) { return cost(trial); });
     }
 }
 

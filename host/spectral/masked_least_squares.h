@@ -1,5 +1,7 @@
 #pragma once
 
+#include "host/spectral/masked_normal_equations.h"
+
 #include <Eigen/Core>
 
 namespace reradiant {
@@ -7,21 +9,26 @@ namespace reradiant {
 /// Non-negative least squares over the strictly lower triangle of a square matrix:
 /// minimise cost = sum over o > i of (target(o, i) - sum_k emission(o, k) excitation(i, k))^2.
 struct MaskedLeastSquares {
-    Eigen::MatrixXd target; ///< square; only the strictly lower triangle is read
+    Eigen::MatrixXd target; ///< square, zero on and above the diagonal
 
-    int bands() const { return static_cast<int>(target.rows()); }
-    double cost(const Eigen::MatrixXd& emission, const Eigen::MatrixXd& excitation) const;
-    /// model - target below the diagonal, zero elsewhere.
-    Eigen::MatrixXd residual(const Eigen::MatrixXd& emission,
-                             const Eigen::MatrixXd& excitation) const;
+    /// Model - target below the diagonal, zero elsewhere.
+    Eigen::MatrixXd residual(const FactorPair& factors) const;
+    double cost(const FactorPair& factors) const { return residual(factors).squaredNorm(); }
 
     /// Hierarchical alternating least squares (Cichocki and Phan 2009), one factor column at a
-    /// time: robust from any start, slow near the end.
-    void descend(Eigen::MatrixXd& emission, Eigen::MatrixXd& excitation, int sweeps) const;
-    /// Projected Levenberg-Marquardt (Kanzow, Yamashita, Fukushima 2004) on all factors at once;
-    /// converges quadratically where the triangle is an exact product, which alternating methods
-    /// do not. Stops when the cost stalls or after `most_steps`.
-    void polish(Eigen::MatrixXd& emission, Eigen::MatrixXd& excitation, int most_steps) const;
+    /// time: robust from any start and indifferent to scale, slow near the end.
+    void descend(FactorPair& factors, int sweeps) const;
+
+    /// Levenberg-Marquardt on all entries at once, where being negative costs a penalty. An exact
+    /// non-negative product has no penalty, so it is reached at quadratic speed and without the
+    /// zigzag of active sets. Entries are measured in units of what their own row or column of
+    /// the target asks for, since the factors of one fluorophore span many orders of magnitude
+    /// where its bands overlap. Ends with what is left negative set to zero.
+    void approach(FactorPair& factors, int most_steps) const;
+
+    /// Projected Levenberg-Marquardt (Kanzow, Yamashita, Fukushima 2004): never leaves the
+    /// non-negative entries and never raises the cost.
+    void polish(FactorPair& factors, int most_steps) const;
 };
 
 } // namespace reradiant
