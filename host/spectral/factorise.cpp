@@ -142,9 +142,11 @@ std::vector<double> unbeatable_errors(const Matrix& target, int max_rank) {
 }
 
 /// Steps of the second-order method that a size can afford: each costs about n^3 K^3 operations.
+/// None at several hundred bands, where one would take seconds and descent must do.
 int affordable_steps(Eigen::Index bands, int rank) {
     const double operations = std::pow(static_cast<double>(bands * rank), 3.0);
-    return static_cast<int>(std::clamp(1e9 / operations, 2.0, 100.0));
+    const double budget = operations < 2e7 ? 2e9 : 4e8;
+    return static_cast<int>(std::min(budget / operations, 100.0));
 }
 
 void improve(const MaskedLeastSquares& problem, const Round& round, Candidate& candidate) {
@@ -182,7 +184,7 @@ Candidate best_of_rank(const MaskedLeastSquares& problem, int rank, const Factor
         candidates.resize(std::min(candidates.size(), round.kept));
     }
     Candidate& best = candidates.front();
-    problem.polish(best.factors, affordable_steps(problem.target.rows(), rank) / 4 + 1);
+    problem.polish(best.factors, affordable_steps(problem.target.rows(), rank) / 4);
     best.cost = problem.cost(best.factors);
     return best;
 }
