@@ -18,7 +18,7 @@ struct SourcePosition {
 /// The one exception of the project: what is wrong, where, and what would be right.
 /// Input errors end the program with exit code 2, run-time failures (device, disk) with 1.
 class Error : public std::runtime_error {
-  public:
+public:
     enum class Kind { Input, Runtime };
 
     Error(Kind kind, const SourcePosition& position, const std::string& what_is_wrong,
@@ -29,7 +29,7 @@ class Error : public std::runtime_error {
     /// 2 for input errors, 1 for run-time failures.
     int exit_code() const { return kind_ == Kind::Input ? 2 : 1; }
 
-  private:
+private:
     Kind kind_;
     SourcePosition position_;
 };

@@ -8,7 +8,9 @@ namespace reradiant {
 /// the installed share folder. Throws a run-time Error that names what was tried.
 std::filesystem::path data_directory();
 
-inline std::filesystem::path spectra_directory() { return data_directory() / "spectra"; }
+inline std::filesystem::path spectra_directory() {
+    return data_directory() / "spectra";
+}
 
 /// $RERADIANT_CACHE, else $XDG_CACHE_HOME/reradiant, else ~/.cache/reradiant. Not created here.
 std::filesystem::path cache_directory();

@@ -1,15 +1,14 @@
-#include "host/atomic_file.h"
 #include "host/device/device.h"
+#include "host/report/json_file.h"
 #include "tools/command.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace reradiant {
 
 namespace {
 
-nlohmann::json to_json(const DeviceInfo& device) {
+nlohmann::ordered_json to_json(const DeviceInfo& device) {
     return {{"index", device.index},
             {"name", device.name},
             {"platform", device.platform},
@@ -27,7 +26,7 @@ nlohmann::json to_json(const DeviceInfo& device) {
 int run_devices(const CommonOptions& common) {
     prepare_opencl(common.threads);
     const std::vector<DeviceInfo> devices = list_devices();
-    nlohmann::json list = nlohmann::json::array();
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const DeviceInfo& device : devices) {
         list.push_back(to_json(device));
         if (!common.quiet)
@@ -36,10 +35,9 @@ int run_devices(const CommonOptions& common) {
                        static_cast<double>(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0),
                        device.has_double ? "double" : "no double");
     }
-    if (!common.json.empty())
-        write_text_atomically(common.json, nlohmann::json{{"devices", list}}.dump(2) + "\n");
     if (devices.empty())
         Device("0"); // throws the error that says what to install
+    write_json(common.json, {{"devices", list}});
     return 0;
 }
 

@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
-#include <optional>
+#include <unistd.h>
 
 namespace reradiant {
 
@@ -99,9 +99,24 @@ FoundDevice choose(const std::string& wanted) {
                         "choose one of " + names);
 }
 
+/// Where /sys is not mounted (bare chroots, some containers) hwloc finds neither memory nor cores
+/// and PoCL aborts the process; then hwloc is told about them.
+void describe_machine_without_sys() {
+    std::error_code ignored;
+    if (std::filesystem::is_directory("/sys/devices/system/cpu", ignored))
+        return;
+    const std::string machine =
+        fmt::format("node:1(memory={}) pu:{}",
+                    static_cast<long long>(::sysconf(_SC_PHYS_PAGES)) * ::sysconf(_SC_PAGE_SIZE),
+                    ::sysconf(_SC_NPROCESSORS_ONLN));
+    ::setenv("HWLOC_SYNTHETIC", machine.c_str(), 0);
+    ::setenv("HWLOC_THISSYSTEM", "1", 0);
+}
+
 } // namespace
 
 void prepare_opencl(int threads) {
+    describe_machine_without_sys();
     std::error_code ignored;
     const std::filesystem::path folder = cache_directory() / "pocl";
     std::filesystem::create_directories(folder, ignored);

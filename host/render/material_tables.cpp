@@ -205,7 +205,7 @@ private:
         if (on_cells.is_factored())
             append_factors();
         else
-            append_dense(on_cells.factor_error);
+            append_dense();
     }
 
     void append_factors() {
@@ -222,7 +222,7 @@ private:
             fmt::format("material '{}': re-radiation of rank {}", material_.name, rank));
     }
 
-    void append_dense(double factor_error) {
+    void append_dense() {
         record_.dense = here();
         out_.features.dense_matrix = true;
         for (const LaneOperator& op : operators_)
@@ -230,9 +230,9 @@ private:
                 for (int o = 0; o < padded_; ++o)
                     out_.tables.push_back(
                         i < lanes_ && o < lanes_ ? static_cast<float>(op.dense(o, i)) : 0.0f);
-        out_.notes.push_back(
-            fmt::format("material '{}': dense re-radiation matrix (rank {} would leave out {:.2g})",
-                        material_.name, 4, factor_error));
+        out_.notes.push_back(fmt::format("material '{}': dense re-radiation matrix, it does not "
+                                         "factor to 4 terms or holds anti-Stokes emission",
+                                         material_.name));
     }
 
     /// Reflectance of each component at one angle, per lane, at the middle phase.

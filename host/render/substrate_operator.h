@@ -11,7 +11,6 @@ struct SubstrateOnCells {
     Eigen::MatrixXd
         fluorescence; ///< (cells, cells), rows = emission; empty if it does not re-radiate
     Eigen::MatrixXd emission, excitation; ///< (cells, K) masked factors; empty if kept dense
-    double factor_error = 0.0;            ///< relative, of what the factors leave out
     bool is_factored() const { return fluorescence.size() > 0 && emission.cols() > 0; }
 };
 
