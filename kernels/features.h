@@ -16,7 +16,7 @@
 #ifndef FEATURE_SPECTRAL_STACK
 #define FEATURE_SPECTRAL_STACK 1
 #endif
-/// Some rough top interface has an IOR that depends on wavelength.
+/// Fresnel factors that kernels evaluate (rough top, or model A) depend on wavelength.
 #ifndef FEATURE_DISPERSION
 #define FEATURE_DISPERSION 1
 #endif

@@ -12,6 +12,7 @@
 typedef struct {
     MaterialRecord material;
     __global const LayerRecord* layers;
+    __global const LobeRecord* lobes;
     __global const float* tables;
     uint phase;
     uint phases;
@@ -44,6 +45,37 @@ float16 fresnel_lanes(__global const float* eta, float cos_h) {
         ((float*)&result)[i] = fresnel_dielectric(cos_h, eta[i]);
     return result;
 }
+#endif
+
+#if FEATURE_DISPERSION && FEATURE_WEIDLICH_WILKIE
+#define FEATURE_MODEL_A_PER_LANE 1
+
+/// IOR ratios of one lane: add a layer's eta_lanes.
+__global const float* lane_etas(const GatherContext* context, uint lane) {
+    return context->tables + (size_t)context->phase * LANES + lane;
+}
+
+/// What model A's interfaces let in and out between two directions, per lane.
+void model_a_ways(const GatherContext* context, Vec3 wi, Vec3 wo, float16* way_in,
+                  float16* way_out) {
+    for (uint lane = 0u; lane < LANES; ++lane) {
+        const LayerDescent descent = layer_stack_descend(
+            context->layers, context->material.layer_count, lane_etas(context, lane), wi, wo);
+        ((float*)way_in)[lane] = descent.way_in;
+        ((float*)way_out)[lane] = descent.way_out;
+    }
+}
+
+/// A deeper lobe of model A for 16 lanes.
+float16 model_a_lobe(const GatherContext* context, uint layer, Vec3 wi, Vec3 wo, uint chunk) {
+    float16 result;
+    for (uint i = 0u; i < WIDTH; ++i)
+        ((float*)&result)[i] = layer_stack_nested_lobe(
+            context->layers, layer, lane_etas(context, chunk * WIDTH + i), wi, wo);
+    return result;
+}
+#else
+#define FEATURE_MODEL_A_PER_LANE 0
 #endif
 
 /// Adds what one direction brings to the substrate (`down`) and to the specular part (`up`).
@@ -82,10 +114,17 @@ void gather_direction(const GatherContext* context, DirectionRecord d, Vec3 wo, 
 #endif
 #if FEATURE_DEEPER_LOBES
         const uint size = TABLE_NODES * (m.spectral ? context->phases * LANES : 1u);
-        for (uint l = 0u; l < m.lobe_count; ++l)
-            if (lobe_weights[l] > 0.0f)
-                specular += lobe_weights[l] * stack_lookup(context, m.amplitude + l * size, si, c) *
-                            stack_lookup(context, m.amplitude + l * size, so, c);
+        for (uint l = 0u; l < m.lobe_count; ++l) {
+            if (!(lobe_weights[l] > 0.0f))
+                continue;
+            float16 lobe = lobe_weights[l] * stack_lookup(context, m.amplitude + l * size, si, c) *
+                           stack_lookup(context, m.amplitude + l * size, so, c);
+#if FEATURE_MODEL_A_PER_LANE
+            if (m.weidlich_wilkie == MODEL_A_PER_LANE)
+                lobe *= model_a_lobe(context, context->lobes[l].layer, vec3(d.x, d.y, d.z), wo, c);
+#endif
+            specular += lobe;
+        }
 #endif
         up[c] += incident * specular;
     }
@@ -110,38 +149,78 @@ void substrate(const GatherContext* context, const float16* down, float16* emitt
 #endif
 }
 
+/// Adds T(o) times what the substrate sends up for `down` to the sum.
+void leave_substrate(const GatherContext* context, TableStencil so, const float16* down,
+                     float16* sum) {
+    float16 emitted[CHUNKS];
+    substrate(context, down, emitted);
+    for (uint c = 0u; c < CHUNKS; ++c)
+        sum[c] += stack_lookup(context, context->material.transmission, so, c) * emitted[c];
+}
+
+#if FEATURE_MODEL_A_PER_LANE
+/// What model A sends out towards wo of one direction's light on the substrate: the way in acts at
+/// the excitation wavelength, the way out at that of emission, so directions do not mix.
+void leave_substrate_per_lane(const GatherContext* context, DirectionRecord d, Vec3 wo,
+                              TableStencil so, float16* down, float16* sum) {
+    float16 way_in[CHUNKS], way_out[CHUNKS], left[CHUNKS];
+    model_a_ways(context, vec3(d.x, d.y, d.z), wo, way_in, way_out);
+    for (uint c = 0u; c < CHUNKS; ++c) {
+        down[c] *= way_in[c];
+        left[c] = (float16)(0.0f);
+    }
+    leave_substrate(context, so, down, left);
+    for (uint c = 0u; c < CHUNKS; ++c) {
+        sum[c] += way_out[c] * left[c];
+        down[c] = (float16)(0.0f);
+    }
+}
+#endif
+
 /// Radiance that leaves a vertex; `radiance` holds what comes along `next` and receives the sum.
 void gather_vertex(const GatherContext* context, const VertexRecord* vertex, int lit,
                    __global const float* light_spectrum, __global const float* vertex_lobes,
                    float16* radiance) {
-    float16 down[CHUNKS], up[CHUNKS], emitted[CHUNKS];
+    float16 down[CHUNKS], up[CHUNKS];
     for (uint c = 0u; c < CHUNKS; ++c) {
         down[c] = (float16)(0.0f);
         up[c] = (float16)(0.0f);
     }
     const Vec3 wo = vec3(vertex->out_x, vertex->out_y, vertex->out_z);
     const TableStencil so = table_stencil(wo.z);
-    if (vertex->has_next)
+#if FEATURE_MODEL_A_PER_LANE
+    const int per_lane = context->material.weidlich_wilkie == MODEL_A_PER_LANE;
+#endif
+    if (vertex->has_next) {
         gather_direction(context, vertex->next, wo, so, vertex_lobes, radiance, down, up);
+#if FEATURE_MODEL_A_PER_LANE
+        if (per_lane)
+            leave_substrate_per_lane(context, vertex->next, wo, so, down, up);
+#endif
+    }
 #if FEATURE_LIGHT_SAMPLING
     if (lit) {
         for (uint c = 0u; c < CHUNKS; ++c)
             radiance[c] = vload16(c, light_spectrum);
         gather_direction(context, vertex->towards_light, wo, so, vertex_lobes + LOBES, radiance,
                          down, up);
+#if FEATURE_MODEL_A_PER_LANE
+        if (per_lane)
+            leave_substrate_per_lane(context, vertex->towards_light, wo, so, down, up);
+#endif
     }
 #endif
-    substrate(context, down, emitted);
+    leave_substrate(context, so, down, up);
     for (uint c = 0u; c < CHUNKS; ++c)
-        radiance[c] =
-            stack_lookup(context, context->material.transmission, so, c) * emitted[c] + up[c];
+        radiance[c] = up[c];
 }
 
 __kernel void gather(__global float* radiance_out, __global const PathState* paths,
                      __global const VertexRecord* vertices, __global const RayRecord* shadow_rays,
                      __global const float* lobe_weights, __global const MaterialRecord* materials,
-                     __global const LayerRecord* layers, __global const LightRecord* lights,
-                     __global const float* tables, uint path_count, uint capacity, uint phases) {
+                     __global const LayerRecord* layers, __global const LobeRecord* lobes,
+                     __global const LightRecord* lights, __global const float* tables,
+                     uint path_count, uint capacity, uint phases) {
     const uint path = (uint)get_global_id(0);
     if (path >= path_count)
         return;
@@ -165,6 +244,7 @@ __kernel void gather(__global float* radiance_out, __global const PathState* pat
         }
         context.material = materials[vertex.material];
         context.layers = layers + context.material.first_layer;
+        context.lobes = lobes + context.material.first_lobe;
         int lit = 0;
         __global const float* spectrum = tables;
 #if FEATURE_LIGHT_SAMPLING

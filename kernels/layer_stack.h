@@ -120,52 +120,78 @@ DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice*
 }
 
 #if FEATURE_WEIDLICH_WILKIE
+/// Two directions on their way down a stack under model A, and what its interfaces let through:
+/// way_in = product of T12, way_out = product of t (absorption not included).
+typedef struct {
+    Vec3 wi, wo;
+    real way_in, way_out;
+} LayerDescent;
+
 /// One interface of model A between two directions just above it (DESIGN A; Weidlich and Wilkie
-/// 2007, eq. 3-5): T12 t, and both directions refracted into the medium below at the macroscopic
-/// normal. Returns 0 when one of them is totally reflected.
-DEVICE_FUNCTION real layer_stack_cross(LayerRecord layer, real eta, Vec3* wi, Vec3* wo) {
+/// 2007, eq. 3-5); both are refracted into the medium below at the macroscopic normal. Nothing
+/// passes when one of them is totally reflected.
+DEVICE_FUNCTION void layer_stack_cross(LayerRecord layer, real eta, LayerDescent* d) {
     real t12, t;
     if (layer.alpha > 0.0f) {
-        const Vec3 h = vec3_normalise(vec3_add(*wi, *wo));
-        t12 = REAL(1.0) - fresnel_dielectric(fmax(vec3_dot(*wi, h), REAL(0.0)), eta);
-        const real g = microfacet_g2((int)layer.distribution, layer.alpha, *wi, *wo, h);
+        const Vec3 h = vec3_normalise(vec3_add(d->wi, d->wo));
+        t12 = REAL(1.0) - fresnel_dielectric(fmax(vec3_dot(d->wi, h), REAL(0.0)), eta);
+        const real g = microfacet_g2((int)layer.distribution, layer.alpha, d->wi, d->wo, h);
         t = (REAL(1.0) - g) + t12 * g;
     } else {
-        t12 = REAL(1.0) - fresnel_dielectric(wi->z, eta);
-        t = REAL(1.0) - fresnel_dielectric(wo->z, eta);
+        t12 = REAL(1.0) - fresnel_dielectric(d->wi.z, eta);
+        t = REAL(1.0) - fresnel_dielectric(d->wo.z, eta);
     }
-    const real cos_i = fresnel_cos_transmitted(wi->z, eta);
-    const real cos_o = fresnel_cos_transmitted(wo->z, eta);
-    if (!(cos_i > REAL(0.0)) || !(cos_o > REAL(0.0)))
-        return REAL(0.0);
-    *wi = vec3(wi->x / eta, wi->y / eta, cos_i);
-    *wo = vec3(wo->x / eta, wo->y / eta, cos_o);
-    return t12 * t;
+    const real cos_i = fresnel_cos_transmitted(d->wi.z, eta);
+    const real cos_o = fresnel_cos_transmitted(d->wo.z, eta);
+    const int passes = cos_i > REAL(0.0) && cos_o > REAL(0.0);
+    d->way_in = passes ? d->way_in * t12 : REAL(0.0);
+    d->way_out = passes ? d->way_out * t : REAL(0.0);
+    d->wi = vec3(d->wi.x / eta, d->wi.y / eta, cos_i);
+    d->wo = vec3(d->wo.x / eta, d->wo.y / eta, cos_o);
 }
 
-/// Product of T12 t over the first `count` interfaces of a stack; directions as above.
-DEVICE_FUNCTION real layer_stack_descend(GLOBAL_CONST LayerRecord* layers, uint count, Vec3* wi,
-                                         Vec3* wo) {
-    real product = REAL(1.0);
-    for (uint k = 0u; k < count && product > REAL(0.0); ++k)
-        product *= layer_stack_cross(layers[k], layers[k].eta, wi, wo);
-    return product;
+/// Down the first `count` interfaces. The IOR ratios are those of the records, or, with
+/// `lane_etas` not null, lane_etas[layer.eta_lanes].
+DEVICE_FUNCTION LayerDescent layer_stack_descend(GLOBAL_CONST LayerRecord* layers, uint count,
+                                                 GLOBAL_CONST shared_float* lane_etas, Vec3 wi,
+                                                 Vec3 wo) {
+    LayerDescent descent;
+    descent.wi = wi;
+    descent.wo = wo;
+    descent.way_in = REAL(1.0);
+    descent.way_out = REAL(1.0);
+    for (uint k = 0u; k < count && descent.way_in > REAL(0.0); ++k)
+        layer_stack_cross(layers[k], lane_etas ? lane_etas[layers[k].eta_lanes] : layers[k].eta,
+                          &descent);
+    return descent;
+}
+
+/// Value of the lobe of one interface under model A, seen through those above (absorption not
+/// included). 1/sr, no cosine.
+DEVICE_FUNCTION real layer_stack_nested_lobe(GLOBAL_CONST LayerRecord* layers, uint index,
+                                             GLOBAL_CONST shared_float* lane_etas, Vec3 wi,
+                                             Vec3 wo) {
+    const LayerRecord layer = layers[index];
+    const LayerDescent above = layer_stack_descend(layers, index, lane_etas, wi, wo);
+    const real through = above.way_in * above.way_out;
+    if (!(through > REAL(0.0)))
+        return REAL(0.0);
+    const Vec3 h = vec3_normalise(vec3_add(above.wi, above.wo));
+    const real eta = lane_etas ? lane_etas[layer.eta_lanes] : layer.eta;
+    return through * fresnel_dielectric(fmax(vec3_dot(above.wi, h), REAL(0.0)), eta) *
+           microfacet_reflection((int)layer.distribution, layer.alpha, above.wi, above.wo);
 }
 #endif
 
-/// Scalar value of a deeper lobe, to be multiplied by its two amplitudes. 1/sr, no cosine.
+/// Scalar value of a deeper lobe, to be multiplied by its two amplitudes (and by what model A
+/// evaluates per lane). 1/sr, no cosine.
 #if FEATURE_DEEPER_LOBES
 DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi, Vec3 wo) {
 #if FEATURE_WEIDLICH_WILKIE
-    if (stack.record.weidlich_wilkie) {
-        const LayerRecord layer = stack.layers[stack.lobes[lobe].layer];
-        const real above = layer_stack_descend(stack.layers, stack.lobes[lobe].layer, &wi, &wo);
-        if (!(above > REAL(0.0)))
-            return REAL(0.0);
-        const Vec3 h = vec3_normalise(vec3_add(wi, wo));
-        return above * fresnel_dielectric(fmax(vec3_dot(wi, h), REAL(0.0)), layer.eta) *
-               microfacet_reflection((int)layer.distribution, layer.alpha, wi, wo);
-    }
+    if (stack.record.weidlich_wilkie == MODEL_A_PER_LANE)
+        return REAL(1.0);
+    if (stack.record.weidlich_wilkie == MODEL_A)
+        return layer_stack_nested_lobe(stack.layers, stack.lobes[lobe].layer, 0, wi, wo);
 #endif
     return microfacet_reflection((int)stack.lobes[lobe].distribution, stack.lobes[lobe].alpha, wi,
                                  wo);
@@ -184,11 +210,15 @@ DEVICE_FUNCTION real layer_stack_top(LayerStackView stack, Vec3 wi, Vec3 wo) {
 }
 #endif
 
-/// Scalar factor of the diffuse part: 1, or model A's interfaces (without absorption).
+/// Scalar factor of the diffuse part: 1, or model A's interfaces (without absorption) where they
+/// do not depend on wavelength.
 DEVICE_FUNCTION real layer_stack_diffuse(LayerStackView stack, Vec3 wi, Vec3 wo) {
 #if FEATURE_WEIDLICH_WILKIE
-    if (stack.record.weidlich_wilkie)
-        return layer_stack_descend(stack.layers, stack.record.layer_count, &wi, &wo);
+    if (stack.record.weidlich_wilkie == MODEL_A) {
+        const LayerDescent descent =
+            layer_stack_descend(stack.layers, stack.record.layer_count, 0, wi, wo);
+        return descent.way_in * descent.way_out;
+    }
 #endif
     return REAL(1.0);
 }

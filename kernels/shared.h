@@ -97,6 +97,10 @@ typedef struct {
 } LobeRecord;
 ASSERT_SIZE(LobeRecord, 16);
 
+/// MaterialRecord::weidlich_wilkie. Per lane: some interface's IOR depends on wavelength.
+#define MODEL_A 1u
+#define MODEL_A_PER_LANE 2u
+
 /// Offsets into the tables (in floats), NO_INDEX where a material has no such table. "grey or
 /// spectral": [node] or [phase][node][lane], as `spectral` says.
 typedef struct {
@@ -115,7 +119,7 @@ typedef struct {
     shared_uint lobe_count;
     shared_uint first_lobe; ///< into the lobes
     shared_uint has_top_lobe;
-    shared_uint weidlich_wilkie; ///< 1: rough factors of model A multiply the diffuse part
+    shared_uint weidlich_wilkie; ///< 0, or MODEL_A: rough factors of model A on the diffuse part
     shared_uint rank;
 } MaterialRecord;
 ASSERT_SIZE(MaterialRecord, 64);

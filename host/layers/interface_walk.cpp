@@ -11,18 +11,6 @@ namespace reradiant {
 
 using kernels::Vec3;
 
-int kernel_distribution(Distribution distribution) {
-    switch (distribution) {
-    case Distribution::Blinn:
-        return MICROFACET_BLINN;
-    case Distribution::Beckmann:
-        return MICROFACET_BECKMANN;
-    case Distribution::Ggx:
-        break;
-    }
-    return MICROFACET_GGX;
-}
-
 namespace {
 
 /// PCG output function (O'Neill 2014) of three counters, in [0, 1).

@@ -18,9 +18,6 @@ struct RoughInterface {
     bool operator==(const RoughInterface&) const = default;
 };
 
-/// MICROFACET_* of the kernels.
-int kernel_distribution(Distribution distribution);
-
 /// A rank-1 lattice rule of Korobov's form: `count` points, generator vector 1, g, g^2, ...
 struct LatticeRule {
     unsigned count, generator;

@@ -1,10 +1,24 @@
 #include "host/layers/stack.h"
 
+#include "kernels/microfacet.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace reradiant {
+
+int kernel_distribution(Distribution distribution) {
+    switch (distribution) {
+    case Distribution::Blinn:
+        return MICROFACET_BLINN;
+    case Distribution::Beckmann:
+        return MICROFACET_BECKMANN;
+    case Distribution::Ggx:
+        break;
+    }
+    return MICROFACET_GGX;
+}
 
 bool LayerStack::is_smooth() const {
     return std::all_of(layers.begin(), layers.end(), [](const Layer& l) { return l.alpha == 0.0; });

@@ -9,6 +9,9 @@ namespace reradiant {
 enum class Distribution { Blinn, Beckmann, Ggx };
 enum class Scattering { Multiple, Single };
 
+/// The kernels' number of a distribution, MICROFACET_*.
+int kernel_distribution(Distribution distribution);
+
 /// An interface and the slab beneath it.
 struct Layer {
     Spectrum ior = Spectrum::constant(1.5); ///< of the medium under the interface

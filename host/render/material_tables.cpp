@@ -2,16 +2,13 @@
 #include "host/render/stack_optics.h"
 #include "host/render/substrate_operator.h"
 
-#include "kernels/fresnel.h"
-#include "kernels/microfacet.h"
-
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace reradiant {
 
@@ -24,18 +21,6 @@ constexpr double least_choice = 0.05;
 double node_cosine(int node) {
     const double u = static_cast<double>(node) / (TABLE_NODES - 1);
     return u * u;
-}
-
-std::uint32_t distribution_code(Distribution distribution) {
-    switch (distribution) {
-    case Distribution::Blinn:
-        return MICROFACET_BLINN;
-    case Distribution::Beckmann:
-        return MICROFACET_BECKMANN;
-    case Distribution::Ggx:
-        break;
-    }
-    return MICROFACET_GGX;
 }
 
 /// Builds one material's tables: optics per (phase, lane), or once for a grey stack.
@@ -106,27 +91,33 @@ private:
         double above = 1.0;
         for (const Layer& layer : material_.stack.layers) {
             const double ior = layer.ior(reference_nm);
-            out_.layers.push_back({static_cast<float>(ior / above), static_cast<float>(layer.alpha),
-                                   distribution_code(layer.distribution), NO_INDEX});
+            out_.layers.push_back(
+                {static_cast<float>(ior / above), static_cast<float>(layer.alpha),
+                 static_cast<std::uint32_t>(kernel_distribution(layer.distribution)), NO_INDEX});
             above = ior;
         }
         const bool has_top = record_.layer_count > 0 && material_.stack.layers.front().alpha > 0.0;
         record_.has_top_lobe = has_top ? 1u : 0u;
         out_.features.rough |= has_top;
-        if (has_top && !material_.stack.layers.front().ior.is_constant()) {
-            out_.layers[record_.first_layer].eta_lanes = append_lanes([&](int lane, int phase) {
-                return material_.stack.layers.front().ior(plan_.wavelength_nm(lane, phase));
+        const bool dispersive = material_.stack.is_dispersive();
+        const bool model_a = model_ == Model::WeidlichWilkie && !material_.stack.is_smooth();
+        record_.weidlich_wilkie = !model_a ? 0u : dispersive ? MODEL_A_PER_LANE : MODEL_A;
+        out_.features.weidlich_wilkie |= model_a;
+        if (model_a && dispersive)
+            append_ior_ratios(material_.stack.layers.size());
+        else if (has_top && !material_.stack.layers.front().ior.is_constant())
+            append_ior_ratios(1);
+    }
+
+    /// IOR below over IOR above per lane, for the first `count` interfaces.
+    void append_ior_ratios(std::size_t count) {
+        out_.features.dispersion = true;
+        for (std::size_t k = 0; k < count; ++k)
+            out_.layers[record_.first_layer + k].eta_lanes = append_lanes([&](int lane, int phase) {
+                const double nm = plan_.wavelength_nm(lane, phase);
+                const auto& layers = material_.stack.layers;
+                return layers[k].ior(nm) / (k > 0 ? layers[k - 1].ior(nm) : 1.0);
             });
-            out_.features.dispersion = true;
-        }
-        const bool ww = model_ == Model::WeidlichWilkie && !material_.stack.is_smooth();
-        record_.weidlich_wilkie = ww ? 1u : 0u;
-        out_.features.weidlich_wilkie |= ww;
-        if (ww && material_.stack.is_dispersive())
-            spdlog::warn("material '{}': under rough interfaces the kernels evaluate "
-                         "weidlich-wilkie with the IOR at {:g} nm; use the model adding for "
-                         "dispersion",
-                         material_.name, reference_nm);
     }
 
     void append_lobes() {
@@ -139,9 +130,10 @@ private:
         record_.first_lobe = static_cast<std::uint32_t>(out_.lobes.size());
         record_.lobe_count = static_cast<std::uint32_t>(lobes.size());
         for (std::size_t l = 0; l < lobes.size(); ++l)
-            out_.lobes.push_back({static_cast<float>(lobes[l].alpha),
-                                  distribution_code(lobes[l].distribution),
-                                  static_cast<std::uint32_t>(layers.at(l)), 0u});
+            out_.lobes.push_back(
+                {static_cast<float>(lobes[l].alpha),
+                 static_cast<std::uint32_t>(kernel_distribution(lobes[l].distribution)),
+                 static_cast<std::uint32_t>(layers.at(l)), 0u});
         out_.features.deeper_lobes |= !lobes.empty();
     }
 
@@ -173,12 +165,14 @@ private:
         }
     }
 
-    std::uint32_t append_lanes(const std::function<double(int lane, int phase)>& value) {
+    /// [phase][lane]; lanes beyond the last get `padding`.
+    std::uint32_t append_lanes(const std::function<double(int lane, int phase)>& value,
+                               float padding = 0.0f) {
         const std::uint32_t offset = here();
         for (int phase = 0; phase < plan_.phases; ++phase)
             for (int lane = 0; lane < padded_; ++lane)
                 out_.tables.push_back(lane < lanes_ ? static_cast<float>(value(lane, phase))
-                                                    : 0.0f);
+                                                    : padding);
         return offset;
     }
 
@@ -276,7 +270,7 @@ private:
                 sum += optics(phase, lane).transmission(std::sqrt((k + 0.5) / 16.0)) / 16.0;
             entering(lane) = sum;
         }
-        return 3.14159265358979 * op.row_sums().cwiseProduct(entering);
+        return std::numbers::pi * op.row_sums().cwiseProduct(entering);
     }
 
     /// [node][components + 1]: cumulative probabilities, then the albedo.

@@ -149,8 +149,9 @@ void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
 
 void Wavefront::gather(const Batch& batch) {
     gather_.bind(radiance_.buffer(), paths_.buffer(), vertices_.buffer(), shadow_rays_.buffer(),
-                 lobe_weights_.buffer(), materials_.buffer(), layers_.buffer(), lights_.buffer(),
-                 tables_.buffer(), batch.paths(), capacity_, static_cast<std::uint32_t>(phases_));
+                 lobe_weights_.buffer(), materials_.buffer(), layers_.buffer(), lobes_.buffer(),
+                 lights_.buffer(), tables_.buffer(), batch.paths(), capacity_,
+                 static_cast<std::uint32_t>(phases_));
     gather_.launch(device_, batch.paths());
     wait_for_kernels(statistics_.gather_seconds);
 }

@@ -102,9 +102,10 @@ __kernel void probe_descend(__global const float* in, __global float* out, uint 
     ITEM;
     Vec3 wi = vec3(in[6 * i], in[6 * i + 1], in[6 * i + 2]);
     Vec3 wo = vec3(in[6 * i + 3], in[6 * i + 4], in[6 * i + 5]);
-    out[3 * i] = layer_stack_descend(layers, layer_count, &wi, &wo);
-    out[3 * i + 1] = wi.z;
-    out[3 * i + 2] = wo.z;
+    const LayerDescent descent = layer_stack_descend(layers, layer_count, 0, wi, wo);
+    out[3 * i] = descent.way_in * descent.way_out;
+    out[3 * i + 1] = descent.wi.z;
+    out[3 * i + 2] = descent.wo.z;
 }
 
 // in, out: LANES values an item; factors: [2 * rank][LANES]

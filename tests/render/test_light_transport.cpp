@@ -103,6 +103,25 @@ TEST(LightTransport, WeidlichWilkieMatchesItsDoubleTwin) {
     }
 }
 
+TEST(LightTransport, DispersiveWeidlichWilkieGoesInAndOutAtItsOwnWavelengths) {
+    Layer top = layer(1.5, 0.2, 0.2), below = layer(1.7, 0.3);
+    top.ior = Spectrum::table({400, 700}, {1.7, 1.4});
+    const ReradiationMatrix matrix = shifted_matrix();
+    const Material m = fluorescent({top, below}, matrix);
+    const RenderResult result = render_plane(m, 40.0, 30.0, matrix.emission, Model::WeidlichWilkie);
+    const double s30 = std::sin(pi / 6), s40 = std::sin(40 * pi / 180);
+    const kernels::Vec3 wi = kernels::vec3(0, s30, cosine(30)),
+                        wo = kernels::vec3(s40, 0, cosine(40));
+    for (int o = 0; o < matrix.emission.count; ++o) {
+        const StackValues out = stack_at(m.stack, matrix.emission.centre_nm(o));
+        double f = WeidlichWilkie::specular(out, wi, wo);
+        for (int i = 0; i < matrix.excitation.count; ++i)
+            f += WeidlichWilkie::way_out(out, wi, wo) * matrix.values(o, i) / pi *
+                 WeidlichWilkie::way_in(stack_at(m.stack, matrix.excitation.centre_nm(i)), wi, wo);
+        EXPECT_NEAR(band_statistics(result.image, o).mean, f * cosine(30), 5e-5 * f) << o;
+    }
+}
+
 /// Mean radiance of a white Lambertian plane: irradiance over pi.
 double irradiance_of(const Light& light, std::uint32_t samples, double& standard_error) {
     // From the side, so that the light does not stand before the camera.
