@@ -87,6 +87,7 @@ TEST_F(ProgramCache, FailedBuildShowsTheLogAndLeavesTheSource) {
 }
 
 TEST(OpenDevice, UnknownNameListsWhatThereIs) {
+    prepare_opencl(0);
     try {
         Device("no such device");
         FAIL() << "no error";
