@@ -20,6 +20,7 @@ namespace {
 
 constexpr double from_nm = 360.0, step_nm = 5.0;
 constexpr int nodes = 95; // to 830 nm
+constexpr double lowest_nm = 1.0, highest_nm = 1e5;
 
 using Weights = Eigen::Matrix<double, 3, nodes>;
 using Vector3 = Eigen::Vector3d;
@@ -113,6 +114,11 @@ Spectrum reflectance_from_rgb(const std::array<double, 3>& rgb) {
         wavelengths_nm.push_back(from_nm + node * step_nm);
         values.push_back(curve.reflectance[node]);
     }
+    // A model, not data: its ends hold everywhere, and nobody is warned of using them.
+    wavelengths_nm.insert(wavelengths_nm.begin(), lowest_nm);
+    values.insert(values.begin(), values.front());
+    wavelengths_nm.push_back(highest_nm);
+    values.push_back(values.back());
     return Spectrum::table(std::move(wavelengths_nm), std::move(values));
 }
 
