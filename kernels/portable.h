@@ -6,14 +6,8 @@
 
 #ifdef __OPENCL_VERSION__
 
-#ifdef RERADIANT_DOUBLE
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-typedef double real;
-#define REAL(x) x
-#else
 typedef float real;
 #define REAL(x) x##f
-#endif
 #define DEVICE_FUNCTION
 #define KERNELS_BEGIN
 #define KERNELS_END
@@ -23,16 +17,13 @@ typedef float real;
 #include <cmath>
 #include <cstdint>
 
-#ifndef RERADIANT_HOST_REAL
-#define RERADIANT_HOST_REAL double
-#endif
 #define REAL(x) real(x)
 #define DEVICE_FUNCTION inline
 #define KERNELS_BEGIN namespace reradiant::kernels {
 #define KERNELS_END }
 
 namespace reradiant::kernels {
-using real = RERADIANT_HOST_REAL;
+using real = double;
 using uint = std::uint32_t;
 using std::cos;
 using std::exp;
