@@ -34,18 +34,60 @@ bool LayerStack::absorbs() const {
                        [](const Layer& l) { return l.thickness > 0.0 && !l.absorption.is_zero(); });
 }
 
+bool LayerStack::scatters() const {
+    return std::any_of(layers.begin(), layers.end(), [](const Layer& l) { return l.scatters(); });
+}
+
+bool LayerStack::has_films() const {
+    return std::any_of(layers.begin(), layers.end(),
+                       [](const Layer& l) { return l.film.has_value(); });
+}
+
+bool LayerStack::has_flakes() const {
+    return std::any_of(layers.begin(), layers.end(),
+                       [](const Layer& l) { return l.flakes.has_value(); });
+}
+
 bool LayerStack::is_grey() const {
     return std::all_of(layers.begin(), layers.end(), [](const Layer& l) {
-        return l.ior.is_constant() && l.absorption.is_constant();
+        return l.ior.is_constant() && l.absorption.is_constant() &&
+               l.scattering_coefficient.is_constant() && !l.film && !l.flakes;
     });
+}
+
+namespace {
+
+FilmValues film_at(const std::optional<ThinFilm>& film, double wavelength_nm) {
+    return film ? FilmValues{film->thickness_nm, film->ior(wavelength_nm)} : FilmValues{};
+}
+
+} // namespace
+
+ConductorValues conductor_at(const Conductor& conductor, double wavelength_nm) {
+    return {conductor.ior(wavelength_nm), conductor.kappa(wavelength_nm),
+            conductor.distribution,       conductor.alpha,
+            conductor.scattering,         film_at(conductor.film, wavelength_nm)};
 }
 
 StackValues stack_at(const LayerStack& stack, double wavelength_nm) {
     StackValues values;
     values.reserve(stack.layers.size());
     for (const Layer& layer : stack.layers) {
-        values.push_back({layer.ior(wavelength_nm), layer.distribution, layer.alpha,
-                          layer.scattering, layer.absorption(wavelength_nm) * layer.thickness});
+        LayerValues& at = values.emplace_back();
+        at.ior = layer.ior(wavelength_nm);
+        at.distribution = layer.distribution;
+        at.alpha = layer.alpha;
+        at.scattering = layer.scattering;
+        at.tau = layer.absorption(wavelength_nm) * layer.thickness;
+        at.tau_scattering = layer.scattering_coefficient(wavelength_nm) * layer.thickness;
+        at.anisotropy = layer.anisotropy;
+        at.film = film_at(layer.film, wavelength_nm);
+        if (layer.flakes) {
+            at.flake_coverage = layer.flakes->coverage;
+            at.flakes = conductor_at(layer.flakes->reflector, wavelength_nm);
+        }
+        if (layer.film || (layer.flakes && layer.flakes->reflector.film))
+            at.wavelength_nm = wavelength_nm;
     }
     return values;
 }

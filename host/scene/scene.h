@@ -56,8 +56,13 @@ struct DirectionalLight {
     Vector3 direction{};
     Spectrum irradiance;
 };
+/// Constant, or with an image: radiance times the texel's colour, rgb made into a spectrum of
+/// radiance (see rgb_emission in host/spectral/colour.h). Latitude-longitude: the top row looks
+/// along +y, the middle column along -z, rotated about y by rotation_deg.
 struct EnvironmentLight {
     Spectrum radiance;
+    int image = -1; ///< index into Scene::images
+    double rotation_deg = 0.0;
 };
 using Light =
     std::variant<RectangleLight, SphereLight, PointLight, DirectionalLight, EnvironmentLight>;
@@ -65,9 +70,18 @@ using Light =
 /// The emission spectrum of any light (radiance, intensity or irradiance).
 const Spectrum& light_spectrum(const Light& light);
 
-/// What happens at the bottom of a stack. Reflectance alone, or a matrix, or fluorophores.
+/// oren-nayar: Oren and Nayar 1994, qualitative form (the seed's), sigma in radians.
+enum class SubstrateType { Lambert, OrenNayar, Conductor };
+
+/// What happens at the bottom of a stack. Reflectance alone, or a matrix, or fluorophores; a
+/// conductor has none of them. Pigments by Kubelka-Munk arrive here as reflectance and matrix.
 struct Substrate {
-    Spectrum reflectance; ///< the non-fluorescent part; for a matrix: its diagonal
+    SubstrateType type = SubstrateType::Lambert;
+    double sigma = 0.0; ///< oren-nayar
+    Conductor conductor;
+    int reflectance_image = -1; ///< index into Scene::textures (image): its rgb, made into a
+                                ///< reflectance, multiplies `reflectance`
+    Spectrum reflectance;       ///< the non-fluorescent part; for a matrix: its diagonal
     std::optional<ReradiationMatrix> matrix; ///< already repaired for rendering
     std::vector<Fluorophore> fluorophores;
 
@@ -85,6 +99,45 @@ struct Substrate {
 enum class Model { Auto, Adding, WeidlichWilkie, Walk };
 Model model_from_name(const std::string& name); ///< std::invalid_argument lists the names
 const char* model_name(Model model);
+
+/// Linear rgb (sRGB primaries) or grey, top row first.
+struct Image {
+    std::filesystem::path file;
+    int width = 0, height = 0;
+    std::vector<float> rgb; ///< 3 * width * height
+};
+
+/// A number t in 0..1 at every point of a surface (and, for flakes, a normal). What t stands for
+/// is up to the material (its variants).
+enum class TextureType { Noise, Voronoi, Checker, Image };
+/// Where a texture is looked up: in space (world units) or in a shape's u, v.
+enum class TextureSpace { World, Uv };
+struct Texture {
+    std::string name;
+    TextureType type = TextureType::Noise;
+    TextureSpace space = TextureSpace::World;
+    double size = 0.1;          ///< of a noise lattice cell, a flake, a square, an image tile
+    int octaves = 4;            ///< noise
+    double tilt_deg = 0;        ///< voronoi, noise: standard deviation of the normals' tilt
+    double sharpness = 1;       ///< noise: contrast about 0.5, 1 = as it is
+    int image = -1;             ///< index into Scene::images
+    bool is_normal_map = false; ///< image of tangent-space normals
+    int levels = 8; ///< steps that continuous parameters are tabulated in; 2 for a checker
+    unsigned seed = 0;
+};
+
+/// What a shape refers to: one material, or one per combination of texture levels, or a mixture.
+/// A point picks a level of each texture at random between the two nearest (linear interpolation
+/// in expectation).
+struct Surface {
+    std::string name;
+    int first_material = 0;    ///< into Scene::materials; the last texture runs fastest
+    std::vector<int> textures; ///< into Scene::textures, at most 3; levels are theirs
+    int normal_texture = -1;   ///< perturbs the shading normal
+    int mixed_with = -1;       ///< another surface (itself not a mixture), or none
+    double mix_weight = 0.0;   ///< share of `mixed_with`
+    int mix_texture = -1;      ///< its t replaces mix_weight
+};
 
 struct Material {
     std::string name;
@@ -112,7 +165,7 @@ struct MeshShape {
 };
 struct Shape {
     std::variant<SphereShape, RectangleShape, DiskShape, MeshShape> geometry;
-    int material = 0; ///< index into Scene::materials
+    int material = 0; ///< index into Scene::surfaces
 };
 
 struct Scene {
@@ -122,7 +175,12 @@ struct Scene {
     IntegratorSettings integrator;
     std::vector<Light> lights;
     std::vector<Shape> shapes;
+    /// Surface i stands for the i-th [[material]] of the file; an untextured one is material i, the
+    /// variants of textured ones follow after all of them.
+    std::vector<Surface> surfaces;
     std::vector<Material> materials;
+    std::vector<Texture> textures;
+    std::vector<Image> images;
     std::string hash; ///< hex digest of the scene file and of every file it names
 };
 
