@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <string>
+#include <vector>
+
+/// Plots as SVG text: one self-contained element without ids, so that any number of them may stand
+/// in one HTML page. Not-finite values are gaps.
+namespace reradiant::svg {
+
+struct Series {
+    std::string label; ///< empty: not in the legend
+    std::vector<double> x, y;
+    std::vector<double> low = {}, high = {}; ///< a band about y, as long as y, or empty
+    bool points = false;                     ///< marks instead of a line
+};
+
+struct Axes {
+    std::string title, x_label, y_label;
+    bool log_x = false, log_y = false; ///< values <= 0 are gaps there
+};
+
+/// Curves over common axes, a legend beside them. The axes hold every value and every band.
+/// std::invalid_argument when the lengths of a series disagree.
+std::string line_plot(const Axes& axes, const std::vector<Series>& series);
+
+struct HeatMap {
+    std::string title, x_label, y_label;
+    std::vector<double> x, y; ///< cell centres, ascending in equal steps
+    Eigen::MatrixXd value;    ///< (y, x); NaN cells are hatched grey
+    bool diverging = false;   ///< colours centred at 0, for differences
+};
+
+/// A matrix in perceptually uniform colours with a colour bar. std::invalid_argument when sizes
+/// disagree or the centres are not in equal steps.
+std::string heat_map(const HeatMap& map);
+
+} // namespace reradiant::svg
