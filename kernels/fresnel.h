@@ -1,4 +1,4 @@
-// Unpolarised Fresnel equations of a smooth dielectric interface.
+// Unpolarised Fresnel equations of smooth interfaces: dielectrics and conductors.
 #ifndef RERADIANT_FRESNEL_H
 #define RERADIANT_FRESNEL_H
 
@@ -43,6 +43,40 @@ DEVICE_FUNCTION real fresnel_cos_transmitted(real cos_i, real eta) {
     }
     c = sqrt(g2) / eta;
     return c < REAL(1.0) ? c : REAL(1.0);
+}
+
+/// Reflectance (unit 1) of an opaque conductor for unpolarised light: IOR eta + i k relative to the
+/// medium of incidence, cos_i >= 0. k == 0 is a dielectric of IOR ratio eta.
+/// Born and Wolf, 14.2, with q = a + i b, q^2 = (eta + i k)^2 - sin^2: |r_s|^2 = ((a - c)^2 + b^2)
+/// /
+/// ((a + c)^2 + b^2) and |r_p / r_s|^2 = ((a c - s^2)^2 + (b c)^2) / ((a c + s^2)^2 + (b c)^2). The
+/// smaller of a and b follows from a b = eta k, and a - c from a^2 - c^2, so that single precision
+/// keeps its digits for strong and for vanishing absorption.
+DEVICE_FUNCTION real fresnel_conductor(real cos_i, real eta, real k) {
+    real excess = (eta - REAL(1.0)) * (eta + REAL(1.0));
+    real cos2 = cos_i * cos_i;
+    real sin2 = (REAL(1.0) - cos_i) * (REAL(1.0) + cos_i);
+    real q2 = excess - k * k + cos2;
+    real product = eta * k;
+    real modulus = sqrt(q2 * q2 + REAL(4.0) * product * product);
+    real a, b, difference, s, p, bc;
+    if (!(product > REAL(0.0))) {
+        return k > REAL(0.0) ? REAL(1.0) : fresnel_dielectric(cos_i, eta);
+    }
+    if (q2 > REAL(0.0)) {
+        a = sqrt(REAL(0.5) * (modulus + q2));
+        b = product / a;
+    } else {
+        b = sqrt(REAL(0.5) * (modulus - q2));
+        a = product / b;
+    }
+    difference = (excess - k * k + b * b) / (a + cos_i);
+    s = (difference * difference + b * b) / ((a + cos_i) * (a + cos_i) + b * b);
+    bc = b * cos_i;
+    p = ((a * cos_i - sin2) * (a * cos_i - sin2) + bc * bc) /
+        ((a * cos_i + sin2) * (a * cos_i + sin2) + bc * bc);
+    s = REAL(0.5) * s * (REAL(1.0) + p);
+    return s < REAL(1.0) ? s : REAL(1.0);
 }
 
 KERNELS_END
