@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -116,8 +117,14 @@ std::vector<PlacedWavelength> heading_wavelengths(const TextReader& reader,
     return axis;
 }
 
+double entry_value(const TextReader& reader, const TextToken& token, Gaps gaps) {
+    if (gaps == Gaps::BecomeNan && token.text == "nan")
+        return std::numeric_limits<double>::quiet_NaN();
+    return reader.number(token);
+}
+
 CsvBody read_wide(TextReader& reader, const std::vector<TextToken>& headings,
-                  bool rows_are_emission) {
+                  bool rows_are_emission, Gaps gaps) {
     const std::vector<PlacedWavelength> columns = heading_wavelengths(reader, headings);
     std::vector<PlacedWavelength> rows;
     std::vector<double> values;
@@ -132,7 +139,7 @@ CsvBody read_wide(TextReader& reader, const std::vector<TextToken>& headings,
         rows.push_back({reader.wavelength_nm(tokens[0]), reader.position(tokens[0])});
         require_matrix_size(rows.back().position, rows.size(), columns.size());
         for (std::size_t k = 1; k < tokens.size(); ++k)
-            values.push_back(reader.number(tokens[k]));
+            values.push_back(entry_value(reader, tokens[k], gaps));
     }
     if (rows.empty())
         throw_input_error(reader.position(reader.line_number(), 1), "no rows after the headings",
@@ -152,7 +159,7 @@ struct LongEntry {
 };
 using LongEntries = std::map<std::pair<double, double>, LongEntry>; // (emission, excitation)
 
-LongEntries read_long_entries(TextReader& reader) {
+LongEntries read_long_entries(TextReader& reader, Gaps gaps) {
     LongEntries entries;
     for (std::string_view line; reader.next_line(line);) {
         if (trimmed(line).empty() || trimmed(line).starts_with('#'))
@@ -163,7 +170,7 @@ LongEntries read_long_entries(TextReader& reader) {
                               fmt::format("{} values in this line", tokens.size()),
                               "write excitation_nm,emission_nm,value");
         const std::pair key{reader.wavelength_nm(tokens[1]), reader.wavelength_nm(tokens[0])};
-        const LongEntry entry{reader.number(tokens[2]), reader.position(tokens[0])};
+        const LongEntry entry{entry_value(reader, tokens[2], gaps), reader.position(tokens[0])};
         if (!entries.emplace(key, entry).second)
             throw_input_error(entry.position,
                               fmt::format("excitation {} nm, emission {} nm is given twice",
@@ -177,8 +184,8 @@ LongEntries read_long_entries(TextReader& reader) {
     return entries;
 }
 
-CsvBody read_long(TextReader& reader) {
-    const LongEntries entries = read_long_entries(reader);
+CsvBody read_long(TextReader& reader, Gaps gaps) {
+    const LongEntries entries = read_long_entries(reader, gaps);
     std::map<double, SourcePosition> emission, excitation;
     for (const auto& [key, entry] : entries) {
         emission.emplace(key.first, entry.position);
@@ -197,7 +204,10 @@ CsvBody read_long(TextReader& reader) {
             const double emission_nm = body.emission[o].nm, excitation_nm = body.excitation[i].nm;
             const auto found = entries.find({emission_nm, excitation_nm});
             // Impossible entries may be left out; any other gap is a mistake.
-            if (found == entries.end() && emission_nm >= excitation_nm)
+            if (found == entries.end() && gaps == Gaps::BecomeNan)
+                body.values(static_cast<Eigen::Index>(o), static_cast<Eigen::Index>(i)) =
+                    std::numeric_limits<double>::quiet_NaN();
+            else if (found == entries.end() && emission_nm >= excitation_nm)
                 throw_input_error(body.emission[o].position,
                                   fmt::format("excitation {} nm, emission {} nm is missing",
                                               excitation_nm, emission_nm),
@@ -251,7 +261,7 @@ std::string header_text(const ReradiationMatrix& matrix, const MatrixCsvForm& fo
 
 } // namespace
 
-ReradiationMatrix read_matrix_csv(const std::filesystem::path& file) {
+ReradiationMatrix read_matrix_csv(const std::filesystem::path& file, Gaps gaps) {
     TextReader reader(file);
     CsvHeader header;
     for (std::string_view line; reader.next_line(line);) {
@@ -271,9 +281,9 @@ ReradiationMatrix read_matrix_csv(const std::filesystem::path& file) {
         if (!is_long && headings[0].text != "nm")
             throw_input_error(reader.position(headings[0]), "the line of headings is missing",
                               "begin it with 'nm,' or write excitation_nm,emission_nm,value");
-        const ReradiationMatrix matrix =
-            assemble(header, is_long ? read_long(reader)
-                                     : read_wide(reader, headings, *header.rows_are_emission));
+        const ReradiationMatrix matrix = assemble(
+            header, is_long ? read_long(reader, gaps)
+                            : read_wide(reader, headings, *header.rows_are_emission, gaps));
         refuse_undeclared_anti_stokes(matrix, reader.position(headings[0]));
         return matrix;
     }

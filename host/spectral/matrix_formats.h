@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/error.h"
-#include "host/spectral/reradiation.h"
+#include "host/spectral/matrix_io.h"
 
 #include <filesystem>
 #include <vector>
@@ -28,7 +28,7 @@ void scale_off_diagonal(ReradiationMatrix& matrix, double factor);
 /// Input Error at the file for a model with an entry below its excitation and no leave for it.
 void refuse_undeclared_anti_stokes(const ReradiationMatrix& matrix, const SourcePosition& position);
 
-ReradiationMatrix read_matrix_csv(const std::filesystem::path& file);
+ReradiationMatrix read_matrix_csv(const std::filesystem::path& file, Gaps gaps = Gaps::Refused);
 ReradiationMatrix read_matrix_bfc(const std::filesystem::path& file);
 ReradiationMatrix read_matrix_exr(const std::filesystem::path& file);
 void write_matrix_bfc(const std::filesystem::path& file, const ReradiationMatrix& matrix);

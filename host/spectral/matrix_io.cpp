@@ -113,10 +113,10 @@ bool holds_reradiation(const std::filesystem::path& file) {
     return false;
 }
 
-ReradiationMatrix read_reradiation(const std::filesystem::path& file) {
+ReradiationMatrix read_reradiation(const std::filesystem::path& file, Gaps gaps) {
     const std::string ending = lower_case_ending(file);
     if (ending == ".csv")
-        return read_matrix_csv(file);
+        return read_matrix_csv(file, gaps);
     if (ending == ".bfc")
         return read_matrix_bfc(file);
     if (ending == ".exr")

@@ -6,12 +6,15 @@
 
 namespace reradiant {
 
+/// What an entry that was not measured does: `nan`, or absent from the long form of a CSV.
+enum class Gaps { Refused, BecomeNan };
+
 /// Reads a re-radiation matrix by its ending: .csv (INTERFACE, "Re-radiation CSV": wide or long
 /// form, per-band or density-per-nm, either orientation), .bfc (Labsphere BFC-450; kind =
 /// measured) or .exr (bispectral, Fichet, Pacanowski and Wilkie 2021). Values are converted to
 /// per-band form with rows = emission, but otherwise raw: nothing is repaired or checked for
 /// energy here. Throws an input Error with file, line and column.
-ReradiationMatrix read_reradiation(const std::filesystem::path& file);
+ReradiationMatrix read_reradiation(const std::filesystem::path& file, Gaps gaps = Gaps::Refused);
 
 /// Writes by ending: .csv (wide, per-band, rows-emission), .bfc or .exr. Atomic: a temporary
 /// file beside it, fsync, rename. At least 9 significant digits (17 where needed to read back

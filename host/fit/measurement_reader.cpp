@@ -1,0 +1,148 @@
+#include "host/fit/measurement_reader.h"
+
+#include "host/spectral/matrix_formats.h"
+#include "host/spectral/text_reader.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <tuple>
+
+namespace reradiant {
+
+namespace {
+
+constexpr std::string_view headings =
+    "theta_i_deg,theta_o_deg,phi_deg,lambda_i_nm,lambda_o_nm,value,stderr,part";
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+struct Row {
+    double emission_nm, excitation_nm, value, sigma;
+    SourcePosition position;
+};
+using Directions = std::tuple<double, double, double>; // theta_i, theta_o, phi in degrees
+using RowsByDirections = std::map<Directions, std::vector<Row>>;
+
+/// Values of the '#' lines that a measurement may not contradict.
+void check_header_line(const TextReader& reader, std::string_view line, BispectralData& data) {
+    const auto colon = line.find(':');
+    if (colon == std::string_view::npos)
+        return;
+    const std::string_view name = trimmed(line.substr(1, colon - 1));
+    const std::string_view value = trimmed(line.substr(colon + 1));
+    const auto require = [&](std::string_view key, std::string_view right) {
+        if (name == key && value != right)
+            throw_input_error(
+                reader.position(reader.line_number(), static_cast<int>(colon) + 2),
+                fmt::format("{} '{}' contradicts the headings of `measure`", key, value),
+                fmt::format("its rows are {}", right));
+    };
+    require("quantity", "per-band");
+    require("orientation", "rows-emission");
+    if (name == "anti-stokes")
+        data.anti_stokes_allowed = value == "allowed";
+}
+
+double angle(const TextReader& reader, const TextToken& token, double below) {
+    if (token.text.empty())
+        throw_input_error(reader.position(token), "a row without directions",
+                          "hemispherical rows cannot be fitted; measure directions");
+    const double degrees = reader.number(token);
+    if (!(degrees >= 0.0 && degrees < below))
+        throw_input_error(reader.position(token), fmt::format("{} degrees", degrees),
+                          fmt::format("write 0 up to {}", below));
+    return degrees;
+}
+
+void read_row(const TextReader& reader, const std::vector<TextToken>& tokens,
+              RowsByDirections& rows) {
+    if (tokens.size() != 8)
+        throw_input_error(reader.position(tokens.back()),
+                          fmt::format("{} values in this line", tokens.size()),
+                          fmt::format("write {}", headings));
+    if (tokens[7].text == "specular")
+        return;
+    if (tokens[7].text != "diffuse")
+        throw_input_error(reader.position(tokens[7]),
+                          fmt::format("'{}' is not a part", tokens[7].text),
+                          "write diffuse or specular");
+    const Directions at{angle(reader, tokens[0], 90.0), angle(reader, tokens[1], 90.0),
+                        angle(reader, tokens[2], 360.0)};
+    const auto number = [&](const TextToken& token) {
+        return token.text == "nan" ? nan_value : reader.number(token);
+    };
+    const double sigma = number(tokens[6]);
+    rows[at].push_back({reader.wavelength_nm(tokens[4]), reader.wavelength_nm(tokens[3]),
+                        std::numbers::pi * number(tokens[5]),
+                        sigma > 0.0 ? std::numbers::pi * sigma : nan_value,
+                        reader.position(tokens[3])});
+}
+
+/// The wavelengths that occur, each with its first place.
+WavelengthGrid grid_of(const RowsByDirections& rows, double Row::*wavelength, const char* name) {
+    std::map<double, SourcePosition> seen;
+    for (const auto& [at, list] : rows)
+        for (const Row& row : list)
+            seen.emplace(row.*wavelength, row.position);
+    std::vector<PlacedWavelength> axis;
+    for (const auto& [nm, position] : seen)
+        axis.push_back({nm, position});
+    return axis_grid(axis, name, 1.0);
+}
+
+BispectralBlock block_of(const Directions& at, const std::vector<Row>& rows,
+                         const BispectralData& data) {
+    BispectralBlock block;
+    block.geometry = {std::get<0>(at), std::get<1>(at), std::get<2>(at)};
+    block.value = Eigen::MatrixXd::Constant(data.emission.count, data.excitation.count, nan_value);
+    block.sigma = block.value;
+    Eigen::MatrixXi seen = Eigen::MatrixXi::Zero(block.value.rows(), block.value.cols());
+    for (const Row& row : rows) {
+        const int o = data.emission.band_of(row.emission_nm);
+        const int i = data.excitation.band_of(row.excitation_nm);
+        if (seen(o, i)++ > 0)
+            throw_input_error(row.position,
+                              fmt::format("excitation {} nm, emission {} nm is given twice",
+                                          row.excitation_nm, row.emission_nm),
+                              "keep one of the two lines");
+        block.value(o, i) = row.value;
+        block.sigma(o, i) = row.sigma;
+    }
+    return block;
+}
+
+} // namespace
+
+BispectralData read_measurement_blocks(const std::filesystem::path& file) {
+    TextReader reader(file);
+    BispectralData data;
+    RowsByDirections rows;
+    bool past_headings = false;
+    for (std::string_view line; reader.next_line(line);) {
+        line = trimmed(line);
+        if (line.starts_with('#'))
+            check_header_line(reader, line, data);
+        else if (line.empty())
+            continue;
+        else if (past_headings)
+            read_row(reader, reader.split_at_commas(line), rows);
+        else if (line == headings)
+            past_headings = true;
+        else
+            throw_input_error(reader.position(reader.line_number(), 1),
+                              "these headings are not known", fmt::format("write {}", headings));
+    }
+    if (rows.empty())
+        throw_input_error(reader.position(std::max(1, reader.line_number()), 1),
+                          "no diffuse rows to fit", "measure directions off the mirror");
+    data.emission = grid_of(rows, &Row::emission_nm, "emission");
+    data.excitation = grid_of(rows, &Row::excitation_nm, "excitation");
+    for (const auto& [at, list] : rows)
+        data.blocks.push_back(block_of(at, list, data));
+    return data;
+}
+
+} // namespace reradiant
