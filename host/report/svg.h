@@ -17,7 +17,7 @@ struct Series {
 };
 
 struct Axes {
-    std::string title, x_label, y_label;
+    std::string title = {}, x_label = {}, y_label = {};
     bool log_x = false, log_y = false; ///< values <= 0 are gaps there
 };
 
@@ -26,7 +26,7 @@ struct Axes {
 std::string line_plot(const Axes& axes, const std::vector<Series>& series);
 
 struct HeatMap {
-    std::string title, x_label, y_label;
+    std::string title = {}, x_label = {}, y_label = {};
     std::vector<double> x, y; ///< cell centres, ascending in equal steps
     Eigen::MatrixXd value;    ///< (y, x); NaN cells are hatched grey
     bool diverging = false;   ///< colours centred at 0, for differences
