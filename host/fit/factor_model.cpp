@@ -1,0 +1,223 @@
+#include "host/fit/factor_model.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace reradiant {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+/// Basis functions that are not zero at a band.
+struct Support {
+    Eigen::Index first = 0;
+    std::vector<double> values;
+};
+
+Support support_at(const SmoothBasis& basis, Eigen::Index band) {
+    Eigen::Index first = 0, end = basis.size();
+    while (first < end && basis.values(band, first) == 0.0)
+        ++first;
+    while (end > first && basis.values(band, end - 1) == 0.0)
+        --end;
+    Support support{first, {}};
+    for (Eigen::Index j = first; j < end; ++j)
+        support.values.push_back(basis.values(band, j));
+    return support;
+}
+
+/// Sum over a support of value times block, K numbers.
+template <typename Block>
+Vector curve_values(const Support& support, int rank, Block block) {
+    Vector sum = Vector::Zero(rank);
+    for (std::size_t a = 0; a < support.values.size(); ++a)
+        sum += support.values[a] * Eigen::Map<const Vector>(block(a), rank);
+    return sum;
+}
+
+/// weight * (sum_k e_k(o) x_k(i) - value): blocks of the emission's support, then of the
+/// excitation's.
+class EntryResidual final : public ceres::CostFunction {
+public:
+    EntryResidual(int rank, Support emission, Support excitation, double value, double weight)
+        : rank_(rank), emission_(std::move(emission)), excitation_(std::move(excitation)),
+          value_(value), weight_(weight) {
+        set_num_residuals(1);
+        for (std::size_t b = 0; b < emission_.values.size() + excitation_.values.size(); ++b)
+            mutable_parameter_block_sizes()->push_back(rank);
+    }
+
+    bool Evaluate(double const* const* parameters, double* residual,
+                  double** jacobians) const override {
+        const std::size_t split = emission_.values.size();
+        const Vector e =
+            curve_values(emission_, rank_, [&](std::size_t a) { return parameters[a]; });
+        const Vector x =
+            curve_values(excitation_, rank_, [&](std::size_t b) { return parameters[split + b]; });
+        residual[0] = weight_ * (e.dot(x) - value_);
+        if (jacobians == nullptr)
+            return true;
+        for (std::size_t a = 0; a < split; ++a)
+            if (jacobians[a] != nullptr)
+                Eigen::Map<Vector>(jacobians[a], rank_) = weight_ * emission_.values[a] * x;
+        for (std::size_t b = 0; b < excitation_.values.size(); ++b)
+            if (jacobians[split + b] != nullptr)
+                Eigen::Map<Vector>(jacobians[split + b], rank_) =
+                    weight_ * excitation_.values[b] * e;
+        return true;
+    }
+
+private:
+    int rank_;
+    Support emission_, excitation_;
+    double value_, weight_;
+};
+
+/// Penalty of one excitation column: all emission blocks, then those of its excitation support.
+class ColumnPenalty final : public ceres::CostFunction {
+public:
+    ColumnPenalty(int rank, const SmoothBasis& emission, Support excitation, Vector photons,
+                  double budget, Eigen::Index column, const PhotonPenalty& penalty)
+        : rank_(rank), excitation_(std::move(excitation)),
+          share_(emission.values.transpose() * photons), budget_(budget), column_(column),
+          penalty_(penalty) {
+        set_num_residuals(1);
+        for (Eigen::Index b = 0; b < share_.size(); ++b)
+            mutable_parameter_block_sizes()->push_back(rank);
+        for (std::size_t b = 0; b < excitation_.values.size(); ++b)
+            mutable_parameter_block_sizes()->push_back(rank);
+    }
+
+    bool Evaluate(double const* const* parameters, double* residual,
+                  double** jacobians) const override {
+        const auto split = static_cast<std::size_t>(share_.size());
+        Vector e = Vector::Zero(rank_);
+        for (std::size_t a = 0; a < split; ++a)
+            e += share_(static_cast<Eigen::Index>(a)) *
+                 Eigen::Map<const Vector>(parameters[a], rank_);
+        const Vector x =
+            curve_values(excitation_, rank_, [&](std::size_t b) { return parameters[split + b]; });
+        const double excess = e.dot(x) - budget_;
+        residual[0] = penalty_.residual(column_, excess);
+        if (jacobians == nullptr)
+            return true;
+        const double slope = penalty_.slope(column_, excess);
+        for (std::size_t a = 0; a < split; ++a)
+            if (jacobians[a] != nullptr)
+                Eigen::Map<Vector>(jacobians[a], rank_) =
+                    slope * share_(static_cast<Eigen::Index>(a)) * x;
+        for (std::size_t b = 0; b < excitation_.values.size(); ++b)
+            if (jacobians[split + b] != nullptr)
+                Eigen::Map<Vector>(jacobians[split + b], rank_) = slope * excitation_.values[b] * e;
+        return true;
+    }
+
+private:
+    int rank_;
+    Support excitation_;
+    Vector share_; ///< photons of column i that a unit of every emission coefficient stands for
+    double budget_;
+    Eigen::Index column_;
+    const PhotonPenalty& penalty_;
+};
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+} // namespace
+
+FactorModel::FactorModel(const FitTarget& target, int rank, const SmoothBasis& emission,
+                         const SmoothBasis& excitation, const PhotonPenalty& penalty,
+                         RobustLoss loss)
+    : target_(target), rank_(rank), emission_(emission), excitation_(excitation), penalty_(penalty),
+      loss_(loss) {}
+
+std::vector<int> FactorModel::block_sizes() const {
+    return std::vector<int>(static_cast<std::size_t>(emission_.size() + excitation_.size()), rank_);
+}
+
+LinearAlgebra FactorModel::linear_algebra() const {
+    if (emission_.is_per_band() && excitation_.is_per_band() && !penalty_.is_active())
+        return {LinearAlgebra::Type::DenseSchur, static_cast<std::size_t>(emission_.size())};
+    return {LinearAlgebra::Type::DenseNormal};
+}
+
+void FactorModel::add_residuals(ceres::Problem& problem, const std::vector<double*>& blocks) const {
+    const auto first_excitation = static_cast<std::size_t>(emission_.size());
+    const auto append = [&](std::vector<double*>& list, const Support& support, std::size_t first) {
+        for (std::size_t a = 0; a < support.values.size(); ++a)
+            list.push_back(blocks[first + static_cast<std::size_t>(support.first) + a]);
+    };
+    ceres::LossFunction* const loss = make_loss(loss_);
+    for (Eigen::Index i = 0; i < target_.value.cols(); ++i) {
+        const Support x = support_at(excitation_, i);
+        for (Eigen::Index o = 0; o < target_.value.rows(); ++o) {
+            if (target_.weight(o, i) <= 0.0 || target_.allowed(o, i) == 0.0)
+                continue;
+            const Support e = support_at(emission_, o);
+            std::vector<double*> used;
+            append(used, e, 0);
+            append(used, x, first_excitation);
+            problem.AddResidualBlock(
+                new EntryResidual(rank_, e, x, target_.value(o, i), target_.weight(o, i)), loss,
+                used);
+        }
+        if (penalty_.strength(i) > 0.0) {
+            std::vector<double*> used(blocks.begin(), blocks.begin() + emission_.size());
+            append(used, x, first_excitation);
+            const Vector photons = target_.photons.col(i).cwiseProduct(target_.allowed.col(i));
+            problem.AddResidualBlock(
+                new ColumnPenalty(rank_, emission_, x, photons, target_.budget(i), i, penalty_),
+                nullptr, used);
+        }
+    }
+}
+
+Matrix FactorModel::emission_coefficients(const Vector& parameters) const {
+    return Eigen::Map<const RowMajor>(parameters.data(), emission_.size(), rank_);
+}
+
+Matrix FactorModel::excitation_coefficients(const Vector& parameters) const {
+    return Eigen::Map<const RowMajor>(parameters.data() + emission_.size() * rank_,
+                                      excitation_.size(), rank_);
+}
+
+Matrix FactorModel::emission(const Vector& parameters) const {
+    return emission_.values * emission_coefficients(parameters);
+}
+
+Matrix FactorModel::excitation(const Vector& parameters) const {
+    return excitation_.values * excitation_coefficients(parameters);
+}
+
+Matrix FactorModel::matrix(const Vector& parameters) const {
+    return (emission(parameters) * excitation(parameters).transpose())
+        .cwiseProduct(target_.allowed);
+}
+
+Vector FactorModel::parameters(const Matrix& emission_coefficients,
+                               const Matrix& excitation_coefficients) const {
+    Vector result((emission_.size() + excitation_.size()) * rank_);
+    Eigen::Map<RowMajor>(result.data(), emission_.size(), rank_) = emission_coefficients;
+    Eigen::Map<RowMajor>(result.data() + emission_.size() * rank_, excitation_.size(), rank_) =
+        excitation_coefficients;
+    return result;
+}
+
+void FactorModel::balance(Vector& parameters) const {
+    Matrix e = emission_coefficients(parameters), x = excitation_coefficients(parameters);
+    for (int k = 0; k < rank_; ++k) {
+        const double e_norm = e.col(k).norm(), x_norm = x.col(k).norm();
+        if (e_norm <= 0.0 || x_norm <= 0.0)
+            continue;
+        e.col(k) *= std::sqrt(x_norm / e_norm);
+        x.col(k) *= std::sqrt(e_norm / x_norm);
+    }
+    parameters = this->parameters(e, x);
+}
+
+} // namespace reradiant
