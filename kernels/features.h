@@ -4,6 +4,12 @@
 #ifndef RERADIANT_FEATURES_H
 #define RERADIANT_FEATURES_H
 
+// Functions that pass float16 where registers are narrower: the warning is about callers built with
+// other settings, and a program is always built whole.
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wpsabi"
+#endif
+
 /// Some substrate re-radiates (factored or dense).
 #ifndef FEATURE_FLUORESCENCE
 #define FEATURE_FLUORESCENCE 1
@@ -36,6 +42,22 @@
 #ifndef FEATURE_WEIDLICH_WILKIE
 #define FEATURE_WEIDLICH_WILKIE 1
 #endif
+/// Some reflectance at facets is tabulated per lane: conductors, flakes, films.
+#ifndef FEATURE_TABULATED_REFLECTANCE
+#define FEATURE_TABULATED_REFLECTANCE 1
+#endif
+/// Some slab scatters.
+#ifndef FEATURE_SCATTERING_SLABS
+#define FEATURE_SCATTERING_SLABS 1
+#endif
+/// Some substrate is Oren-Nayar.
+#ifndef FEATURE_OREN_NAYAR
+#define FEATURE_OREN_NAYAR 1
+#endif
+/// Some material is rendered by the random walk through its stack.
+#ifndef FEATURE_WALK
+#define FEATURE_WALK 1
+#endif
 /// Rectangle or sphere lights.
 #ifndef FEATURE_AREA_LIGHTS
 #define FEATURE_AREA_LIGHTS 1
@@ -47,6 +69,18 @@
 /// A constant environment.
 #ifndef FEATURE_ENVIRONMENT
 #define FEATURE_ENVIRONMENT 1
+#endif
+/// The environment is an image.
+#ifndef FEATURE_ENVIRONMENT_IMAGE
+#define FEATURE_ENVIRONMENT_IMAGE 1
+#endif
+/// Some surface has textures, a perturbed normal, or is a mixture.
+#ifndef FEATURE_TEXTURES
+#define FEATURE_TEXTURES 1
+#endif
+/// Some substrate's reflectance is coloured by an image.
+#ifndef FEATURE_REFLECTANCE_IMAGE
+#define FEATURE_REFLECTANCE_IMAGE 1
 #endif
 /// A lens of finite radius.
 #ifndef FEATURE_LENS
@@ -79,6 +113,9 @@
 #define LOBES 2
 #endif
 
-#define FEATURE_LIGHT_SAMPLING (FEATURE_AREA_LIGHTS || FEATURE_DELTA_LIGHTS)
+#define FEATURE_LIGHT_SAMPLING                                                                     \
+    (FEATURE_AREA_LIGHTS || FEATURE_DELTA_LIGHTS || FEATURE_ENVIRONMENT_IMAGE)
+/// Vertices keep colours that images gave.
+#define FEATURE_COLOURS (FEATURE_ENVIRONMENT_IMAGE || FEATURE_REFLECTANCE_IMAGE)
 
 #endif

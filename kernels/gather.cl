@@ -14,6 +14,7 @@ typedef struct {
     __global const LayerRecord* layers;
     __global const LobeRecord* lobes;
     __global const float* tables;
+    __global const float* colour; ///< of the vertex (VERTEX_COLOURS)
     uint phase;
     uint phases;
 } GatherContext;
@@ -44,6 +45,18 @@ float16 fresnel_lanes(__global const float* eta, float cos_h) {
     for (uint i = 0u; i < WIDTH; ++i)
         ((float*)&result)[i] = fresnel_dielectric(cos_h, eta[i]);
     return result;
+}
+#endif
+
+#if FEATURE_TABULATED_REFLECTANCE
+/// Reflectance of a part's facets for 16 lanes, tabulated over the cosine at the facet.
+float16 facet_reflectance(const GatherContext* context, uint offset, float cos_h, uint chunk) {
+    const TableStencil s = table_stencil(cos_h);
+    __global const float* rows = context->tables + offset +
+                                 ((size_t)context->phase * TABLE_NODES + s.node) * LANES +
+                                 chunk * WIDTH;
+    return s.w0 * vload16(0, rows) + s.w1 * vload16(0, rows + LANES) +
+           s.w2 * vload16(0, rows + 2 * LANES) + s.w3 * vload16(0, rows + 3 * LANES);
 }
 #endif
 
@@ -78,34 +91,83 @@ float16 model_a_lobe(const GatherContext* context, uint layer, Vec3 wi, Vec3 wo,
 #define FEATURE_MODEL_A_PER_LANE 0
 #endif
 
-/// Adds what one direction brings to the substrate (`down`) and to the specular part (`up`).
+#if FEATURE_ROUGH
+/// Lanes of the rough top lobe's reflectance where it depends on wavelength, 1 where `shade` had
+/// it.
+float16 top_reflectance(const GatherContext* context, Vec3 wi, Vec3 wo, uint chunk) {
+#if FEATURE_DISPERSION || FEATURE_TABULATED_REFLECTANCE
+    const LayerRecord top = context->layers[0];
+    const Vec3 h = vec3_normalise(vec3_add(wi, wo));
+    const float cos_h = fmax(vec3_dot(wo, h), 0.0f);
+#if FEATURE_TABULATED_REFLECTANCE
+    if (top.reflectance != NO_INDEX)
+        return facet_reflectance(context, top.reflectance, cos_h, chunk);
+#endif
+#if FEATURE_DISPERSION
+    if (top.eta_lanes != NO_INDEX)
+        return fresnel_lanes(context->tables + top.eta_lanes + (size_t)context->phase * LANES +
+                                 chunk * WIDTH,
+                             cos_h);
+#endif
+#endif
+    return (float16)(1.0f);
+}
+#endif
+
+#if FEATURE_DEEPER_LOBES
+/// Lanes of a deeper lobe beyond its scalar value and its amplitudes.
+float16 lobe_lanes(const GatherContext* context, uint l, Vec3 wi, Vec3 wo, uint chunk) {
+    const LobeRecord lobe = context->lobes[l];
+#if FEATURE_SCATTERING_SLABS
+    if (lobe.slab != NO_INDEX) {
+        const LayerStackView stack = {context->material, context->layers, context->lobes, 0};
+        const LayerFacet inside = layer_stack_inside(stack, lobe, wi, wo);
+        __global const float* slab = context->tables + lobe.slab + context->phase * LANES;
+        const float16 depth = vload16(chunk, slab);
+        const float16 albedo = vload16(chunk, slab + (size_t)context->phases * LANES);
+        return -albedo * expm1(-depth * (1.0f / inside.wi.z + 1.0f / inside.wo.z));
+    }
+#endif
+    float16 lanes = (float16)(1.0f);
+#if FEATURE_MODEL_A_PER_LANE
+    if (context->material.weidlich_wilkie == MODEL_A_PER_LANE)
+        lanes = model_a_lobe(context, lobe.layer, wi, wo, chunk);
+#endif
+#if FEATURE_TABULATED_REFLECTANCE && FEATURE_WEIDLICH_WILKIE
+    if (context->layers[lobe.layer].reflectance != NO_INDEX)
+        lanes *= facet_reflectance(context, context->layers[lobe.layer].reflectance,
+                                   layer_stack_facet(context->layers, lobe.layer, 0, wi, wo).cos_h,
+                                   chunk);
+#endif
+    return lanes;
+}
+#endif
+
+/// Adds what one direction brings to the substrate (`down`; `first`: what meets it once, see
+/// oren-nayar) and to the specular part (`up`).
 void gather_direction(const GatherContext* context, DirectionRecord d, Vec3 wo, TableStencil so,
                       __global const float* lobe_weights, const float16* radiance, float16* down,
-                      float16* up) {
+                      float16* first, float16* up) {
     const TableStencil si = table_stencil(d.z);
     const MaterialRecord m = context->material;
-#if FEATURE_DISPERSION
-    const Vec3 h = vec3_normalise(vec3(wo.x + d.x, wo.y + d.y, wo.z + d.z));
-    const float cos_h = fmax(vec3_dot(wo, h), 0.0f);
-#endif
+    const Vec3 wi = vec3(d.x, d.y, d.z);
     for (uint c = 0u; c < CHUNKS; ++c) {
         const float16 incident = radiance[c];
-        if (d.diffuse > 0.0f)
-            down[c] += incident * (d.diffuse * stack_lookup(context, m.transmission, si, c));
+        if (d.diffuse > 0.0f) {
+            const float16 through = incident * stack_lookup(context, m.transmission, si, c);
+            down[c] += d.diffuse * through;
+#if FEATURE_OREN_NAYAR
+            first[c] += d.first * through;
+#endif
+        }
         float16 specular = (float16)(0.0f);
 #if FEATURE_SMOOTH
         if (d.delta > 0.0f)
             specular += d.delta * stack_lookup(context, m.delta, so, c);
 #endif
 #if FEATURE_ROUGH
-#if FEATURE_DISPERSION
-        if (d.top > 0.0f && context->layers[0].eta_lanes != NO_INDEX)
-            specular += d.top * fresnel_lanes(context->tables + context->layers[0].eta_lanes +
-                                                  (size_t)context->phase * LANES + c * WIDTH,
-                                              cos_h);
-        else
-#endif
-            specular += d.top;
+        if (d.top > 0.0f)
+            specular += d.top * top_reflectance(context, wi, wo, c);
 #endif
 #if FEATURE_ROUGH || FEATURE_DEEPER_LOBES
         if (m.residual != NO_INDEX && d.diffuse > 0.0f)
@@ -114,46 +176,76 @@ void gather_direction(const GatherContext* context, DirectionRecord d, Vec3 wo, 
 #endif
 #if FEATURE_DEEPER_LOBES
         const uint size = TABLE_NODES * (m.spectral ? context->phases * LANES : 1u);
-        for (uint l = 0u; l < m.lobe_count; ++l) {
-            if (!(lobe_weights[l] > 0.0f))
-                continue;
-            float16 lobe = lobe_weights[l] * stack_lookup(context, m.amplitude + l * size, si, c) *
-                           stack_lookup(context, m.amplitude + l * size, so, c);
-#if FEATURE_MODEL_A_PER_LANE
-            if (m.weidlich_wilkie == MODEL_A_PER_LANE)
-                lobe *= model_a_lobe(context, context->lobes[l].layer, vec3(d.x, d.y, d.z), wo, c);
-#endif
-            specular += lobe;
-        }
+        for (uint l = 0u; l < m.lobe_count; ++l)
+            if (lobe_weights[l] > 0.0f)
+                specular += lobe_weights[l] * stack_lookup(context, m.amplitude + l * size, si, c) *
+                            stack_lookup(context, m.amplitude + l * size, so, c) *
+                            lobe_lanes(context, l, wi, wo, c);
 #endif
         up[c] += incident * specular;
     }
 }
 
-/// B: what the substrate sends up, for one phase.
-void substrate(const GatherContext* context, const float16* down, float16* emitted) {
+#if FEATURE_REFLECTANCE_IMAGE
+/// A reflectance rho coloured by an image: scale * rho / (1 - r rho) per lane.
+void coloured_substrate(const GatherContext* context, const float16* down, float16* emitted) {
     const MaterialRecord m = context->material;
-    __global const float* diagonal = context->tables + m.diagonal + context->phase * LANES;
-    for (uint c = 0u; c < CHUNKS; ++c)
-        emitted[c] = vload16(c, diagonal) * down[c];
-#if FEATURE_FLUORESCENCE
-    if (m.rank > 0u)
-        reradiation_factored(
-            down, emitted,
-            context->tables + m.factors + (size_t)context->phase * (2u * m.rank * LANES), m.rank);
-#if FEATURE_DENSE_MATRIX
-    if (m.dense != NO_INDEX)
-        reradiation_dense(down, emitted,
-                          context->tables + m.dense + (size_t)context->phase * (LANES * LANES));
+    const size_t size = (size_t)context->phases * LANES;
+    __global const float* scale = context->tables + m.diagonal + context->phase * LANES;
+    __global const float* r = context->tables + m.image_reflectance + context->phase * LANES;
+    for (uint c = 0u; c < CHUNKS; ++c) {
+        float16 rho = (float16)(0.0f);
+        for (uint k = 0u; k < 3u; ++k)
+            rho += context->colour[3u + k] * vload16(c, r + (k + 1u) * size);
+        emitted[c] = down[c] * vload16(c, scale) * rho / (1.0f - vload16(c, r) * rho);
+    }
+}
 #endif
+
+/// emitted += an operator of the substrate, for one phase.
+void apply_operator(const GatherContext* context, uint diagonal, uint factors, uint dense,
+                    const float16* down, float16* emitted) {
+    __global const float* on_diagonal = context->tables + diagonal + context->phase * LANES;
+    for (uint c = 0u; c < CHUNKS; ++c)
+        emitted[c] += vload16(c, on_diagonal) * down[c];
+#if FEATURE_FLUORESCENCE
+    const uint rank = context->material.rank;
+    if (rank > 0u)
+        reradiation_factored(
+            down, emitted, context->tables + factors + (size_t)context->phase * (2u * rank * LANES),
+            rank);
+#if FEATURE_DENSE_MATRIX
+    if (dense != NO_INDEX)
+        reradiation_dense(down, emitted,
+                          context->tables + dense + (size_t)context->phase * (LANES * LANES));
+#endif
+#endif
+}
+
+/// B: what the substrate sends up.
+void substrate(const GatherContext* context, const float16* down, const float16* first,
+               float16* emitted) {
+    const MaterialRecord m = context->material;
+    for (uint c = 0u; c < CHUNKS; ++c)
+        emitted[c] = (float16)(0.0f);
+#if FEATURE_REFLECTANCE_IMAGE
+    if (m.reflectance_image != NO_INDEX) {
+        coloured_substrate(context, down, emitted);
+        return;
+    }
+#endif
+    apply_operator(context, m.diagonal, m.factors, m.dense, down, emitted);
+#if FEATURE_OREN_NAYAR
+    if (m.first_diagonal != NO_INDEX)
+        apply_operator(context, m.first_diagonal, m.first_factors, m.first_dense, first, emitted);
 #endif
 }
 
 /// Adds T(o) times what the substrate sends up for `down` to the sum.
 void leave_substrate(const GatherContext* context, TableStencil so, const float16* down,
-                     float16* sum) {
+                     const float16* first, float16* sum) {
     float16 emitted[CHUNKS];
-    substrate(context, down, emitted);
+    substrate(context, down, first, emitted);
     for (uint c = 0u; c < CHUNKS; ++c)
         sum[c] += stack_lookup(context, context->material.transmission, so, c) * emitted[c];
 }
@@ -169,7 +261,7 @@ void leave_substrate_per_lane(const GatherContext* context, DirectionRecord d, V
         down[c] *= way_in[c];
         left[c] = (float16)(0.0f);
     }
-    leave_substrate(context, so, down, left);
+    leave_substrate(context, so, down, down, left); // model A has no `first`
     for (uint c = 0u; c < CHUNKS; ++c) {
         sum[c] += way_out[c] * left[c];
         down[c] = (float16)(0.0f);
@@ -177,13 +269,34 @@ void leave_substrate_per_lane(const GatherContext* context, DirectionRecord d, V
 }
 #endif
 
+/// Radiance of a light along the way it was seen, for 16 lanes.
+float16 emission(__global const float* spectrum, __global const float* colour, uint is_image,
+                 uint phases, uint chunk) {
+#if FEATURE_ENVIRONMENT_IMAGE
+    if (is_image) {
+        const size_t size = (size_t)phases * LANES;
+        return colour[0] * vload16(chunk, spectrum) + colour[1] * vload16(chunk, spectrum + size) +
+               colour[2] * vload16(chunk, spectrum + 2u * size);
+    }
+#endif
+    return vload16(chunk, spectrum);
+}
+
 /// Radiance that leaves a vertex; `radiance` holds what comes along `next` and receives the sum.
 void gather_vertex(const GatherContext* context, const VertexRecord* vertex, int lit,
-                   __global const float* light_spectrum, __global const float* vertex_lobes,
-                   float16* radiance) {
+                   __global const float* light_spectrum, uint light_is_image,
+                   __global const float* vertex_lobes, float16* radiance) {
     float16 down[CHUNKS], up[CHUNKS];
+#if FEATURE_OREN_NAYAR
+    float16 first[CHUNKS];
+#else
+    float16* const first = down;
+#endif
     for (uint c = 0u; c < CHUNKS; ++c) {
         down[c] = (float16)(0.0f);
+#if FEATURE_OREN_NAYAR
+        first[c] = (float16)(0.0f);
+#endif
         up[c] = (float16)(0.0f);
     }
     const Vec3 wo = vec3(vertex->out_x, vertex->out_y, vertex->out_z);
@@ -192,7 +305,7 @@ void gather_vertex(const GatherContext* context, const VertexRecord* vertex, int
     const int per_lane = context->material.weidlich_wilkie == MODEL_A_PER_LANE;
 #endif
     if (vertex->has_next) {
-        gather_direction(context, vertex->next, wo, so, vertex_lobes, radiance, down, up);
+        gather_direction(context, vertex->next, wo, so, vertex_lobes, radiance, down, first, up);
 #if FEATURE_MODEL_A_PER_LANE
         if (per_lane)
             leave_substrate_per_lane(context, vertex->next, wo, so, down, up);
@@ -201,26 +314,28 @@ void gather_vertex(const GatherContext* context, const VertexRecord* vertex, int
 #if FEATURE_LIGHT_SAMPLING
     if (lit) {
         for (uint c = 0u; c < CHUNKS; ++c)
-            radiance[c] = vload16(c, light_spectrum);
+            radiance[c] =
+                emission(light_spectrum, context->colour, light_is_image, context->phases, c);
         gather_direction(context, vertex->towards_light, wo, so, vertex_lobes + LOBES, radiance,
-                         down, up);
+                         down, first, up);
 #if FEATURE_MODEL_A_PER_LANE
         if (per_lane)
             leave_substrate_per_lane(context, vertex->towards_light, wo, so, down, up);
 #endif
     }
 #endif
-    leave_substrate(context, so, down, up);
+    leave_substrate(context, so, down, first, up);
     for (uint c = 0u; c < CHUNKS; ++c)
         radiance[c] = up[c];
 }
 
 __kernel void gather(__global float* radiance_out, __global const PathState* paths,
                      __global const VertexRecord* vertices, __global const RayRecord* shadow_rays,
-                     __global const float* lobe_weights, __global const MaterialRecord* materials,
-                     __global const LayerRecord* layers, __global const LobeRecord* lobes,
-                     __global const LightRecord* lights, __global const float* tables,
-                     uint path_count, uint capacity, uint phases) {
+                     __global const float* lobe_weights, __global const float* colours,
+                     __global const MaterialRecord* materials, __global const LayerRecord* layers,
+                     __global const LobeRecord* lobes, __global const LightRecord* lights,
+                     __global const float* tables, uint image_light, uint path_count, uint capacity,
+                     uint phases) {
     const uint path = (uint)get_global_id(0);
     if (path >= path_count)
         return;
@@ -235,11 +350,16 @@ __kernel void gather(__global float* radiance_out, __global const PathState* pat
     for (uint depth = state.vertex_count; depth-- > 0u;) {
         const size_t slot = (size_t)depth * capacity + path;
         const VertexRecord vertex = vertices[slot];
+        context.colour = colours;
+#if FEATURE_COLOURS
+        context.colour += slot * VERTEX_COLOURS;
+#endif
         if (vertex.material == NO_INDEX) {
             __global const float* spectrum =
                 tables + lights[vertex.emitter].spectrum + state.phase * LANES;
             for (uint c = 0u; c < CHUNKS; ++c)
-                radiance[c] = vertex.emitted * vload16(c, spectrum);
+                radiance[c] = vertex.emitted * emission(spectrum, context.colour,
+                                                        vertex.emitter == image_light, phases, c);
             continue;
         }
         context.material = materials[vertex.material];
@@ -252,8 +372,8 @@ __kernel void gather(__global float* radiance_out, __global const PathState* pat
         if (lit)
             spectrum = tables + lights[vertex.light].spectrum + state.phase * LANES;
 #endif
-        gather_vertex(&context, &vertex, lit, spectrum, lobe_weights + slot * (2u * LOBES),
-                      radiance);
+        gather_vertex(&context, &vertex, lit, spectrum, vertex.light == image_light,
+                      lobe_weights + slot * (2u * LOBES), radiance);
     }
     for (uint c = 0u; c < CHUNKS; ++c)
         vstore16(radiance[c], c, radiance_out + (size_t)path * LANES);

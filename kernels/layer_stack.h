@@ -9,6 +9,7 @@
 #include "kernels/features.h"
 #include "kernels/fresnel.h"
 #include "kernels/microfacet.h"
+#include "kernels/oren_nayar.h"
 #include "kernels/portable.h"
 #include "kernels/sampling.h"
 #include "kernels/shared.h"
@@ -80,8 +81,10 @@ DEVICE_FUNCTION real layer_stack_pdf(LayerStackView stack, const LayerChoice* ch
 #endif
 #if FEATURE_DEEPER_LOBES
     for (uint l = 0u; l < stack.record.lobe_count; ++l)
-        pdf += layer_stack_probability(choice, CHOICE_LOBE + l) *
-               layer_stack_lobe_pdf((int)stack.lobes[l].distribution, stack.lobes[l].alpha, wo, wi);
+        if (stack.lobes[l].slab == NO_INDEX)
+            pdf += layer_stack_probability(choice, CHOICE_LOBE + l) *
+                   layer_stack_lobe_pdf((int)stack.lobes[l].distribution, stack.lobes[l].alpha, wo,
+                                        wi);
 #endif
     return pdf;
 }
@@ -132,7 +135,14 @@ typedef struct {
 /// passes when one of them is totally reflected.
 DEVICE_FUNCTION void layer_stack_cross(LayerRecord layer, real eta, LayerDescent* d) {
     real t12, t;
-    if (layer.alpha > 0.0f) {
+    if (layer.coverage > 0.0f) { // a sheet of flakes
+        d->way_in *= REAL(1.0) - layer.coverage;
+        d->way_out *= REAL(1.0) - layer.coverage;
+        return;
+    }
+    if (layer.reflectance != NO_INDEX) {
+        t12 = t = REAL(1.0); // in the tables, they depend on wavelength
+    } else if (layer.alpha > 0.0f) {
         const Vec3 h = vec3_normalise(vec3_add(d->wi, d->wo));
         t12 = REAL(1.0) - fresnel_dielectric(fmax(vec3_dot(d->wi, h), REAL(0.0)), eta);
         const real g = microfacet_g2((int)layer.distribution, layer.alpha, d->wi, d->wo, h);
@@ -166,20 +176,93 @@ DEVICE_FUNCTION LayerDescent layer_stack_descend(GLOBAL_CONST LayerRecord* layer
     return descent;
 }
 
-/// Value of the lobe of one interface under model A, seen through those above (absorption not
-/// included). 1/sr, no cosine.
+/// Two directions at one part of a stack under model A, and the cosine at the facet that reflects
+/// one into the other.
+typedef struct {
+    Vec3 wi, wo;
+    real through, cos_h;
+} LayerFacet;
+
+DEVICE_FUNCTION LayerFacet layer_stack_facet(GLOBAL_CONST LayerRecord* layers, uint index,
+                                             GLOBAL_CONST shared_float* lane_etas, Vec3 wi,
+                                             Vec3 wo) {
+    const LayerDescent above = layer_stack_descend(layers, index, lane_etas, wi, wo);
+    const Vec3 h = vec3_normalise(vec3_add(above.wi, above.wo));
+    LayerFacet facet;
+    facet.wi = above.wi;
+    facet.wo = above.wo;
+    facet.through = above.way_in * above.way_out;
+    facet.cos_h = fmax(vec3_dot(above.wi, h), REAL(0.0));
+    return facet;
+}
+
+/// Value of the lobe of one part under model A, seen through those above (absorption not included,
+/// nor what is tabulated of its reflectance). 1/sr, no cosine.
 DEVICE_FUNCTION real layer_stack_nested_lobe(GLOBAL_CONST LayerRecord* layers, uint index,
                                              GLOBAL_CONST shared_float* lane_etas, Vec3 wi,
                                              Vec3 wo) {
     const LayerRecord layer = layers[index];
-    const LayerDescent above = layer_stack_descend(layers, index, lane_etas, wi, wo);
-    const real through = above.way_in * above.way_out;
-    if (!(through > REAL(0.0)))
+    const LayerFacet facet = layer_stack_facet(layers, index, lane_etas, wi, wo);
+    if (!(facet.through > REAL(0.0)))
         return REAL(0.0);
-    const Vec3 h = vec3_normalise(vec3_add(above.wi, above.wo));
-    const real eta = lane_etas ? lane_etas[layer.eta_lanes] : layer.eta;
-    return through * fresnel_dielectric(fmax(vec3_dot(above.wi, h), REAL(0.0)), eta) *
-           microfacet_reflection((int)layer.distribution, layer.alpha, above.wi, above.wo);
+    real reflectance = REAL(1.0);
+    if (layer.coverage > 0.0f)
+        reflectance = layer.coverage;
+    else if (layer.reflectance == NO_INDEX)
+        reflectance =
+            fresnel_dielectric(facet.cos_h, lane_etas ? lane_etas[layer.eta_lanes] : layer.eta);
+    return facet.through * reflectance *
+           microfacet_reflection((int)layer.distribution, layer.alpha, facet.wi, facet.wo);
+}
+#endif
+
+#if FEATURE_SCATTERING_SLABS
+/// Henyey and Greenstein 1941, 1/sr over the sphere; (1 - g)^2 + 2 g (1 - cos) keeps its digits
+/// where g is near 1.
+DEVICE_FUNCTION real layer_stack_phase(real g, real cos_deflection) {
+    const real d = square(REAL(1.0) - g) + REAL(2.0) * g * (REAL(1.0) - cos_deflection);
+    return (REAL(1.0) - g) * (REAL(1.0) + g) * REAL(0.25) * INV_PI_REAL /
+           (d * sqrt(fmax(d, REAL(1e-30))));
+}
+#endif
+
+#if FEATURE_SCATTERING_SLABS
+/// Directions inside a scattering slab for two directions in air, and what the parts above let
+/// through. Without model A's factors (under `adding`) the tables hold these.
+DEVICE_FUNCTION LayerFacet layer_stack_inside(LayerStackView stack, LobeRecord lobe, Vec3 wi,
+                                              Vec3 wo) {
+    LayerFacet inside;
+    inside.through = REAL(1.0);
+#if FEATURE_WEIDLICH_WILKIE
+    if (stack.record.weidlich_wilkie) {
+        inside = layer_stack_facet(stack.layers, lobe.layer, 0, wi, wo);
+        return inside;
+    }
+#endif
+    inside.wi = wi;
+    inside.wo = wo;
+    for (uint k = 0u; k < lobe.layer; ++k) {
+        const real eta = stack.layers[k].coverage > 0.0f ? REAL(1.0) : stack.layers[k].eta;
+        inside.wi =
+            vec3(inside.wi.x / eta, inside.wi.y / eta, fresnel_cos_transmitted(inside.wi.z, eta));
+        inside.wo =
+            vec3(inside.wo.x / eta, inside.wo.y / eta, fresnel_cos_transmitted(inside.wo.z, eta));
+        if (!(inside.wi.z > REAL(0.0)) || !(inside.wo.z > REAL(0.0)))
+            inside.through = REAL(0.0);
+    }
+    return inside;
+}
+
+/// Single scattering in a slab (Hanrahan and Krueger 1993, eq. 5): through p / (cos_i + cos_o), to
+/// be multiplied per lane by albedo (1 - exp(-tau (1 / cos_i + 1 / cos_o))). 1/sr, no cosine.
+DEVICE_FUNCTION real layer_stack_slab_lobe(LayerStackView stack, uint lobe, Vec3 wi, Vec3 wo) {
+    const LayerFacet inside = layer_stack_inside(stack, stack.lobes[lobe], wi, wo);
+    if (!(inside.through > REAL(0.0)))
+        return REAL(0.0);
+    // light comes along -wi and leaves along wo
+    return inside.through *
+           layer_stack_phase(stack.lobes[lobe].alpha, -vec3_dot(inside.wi, inside.wo)) /
+           (inside.wi.z + inside.wo.z);
 }
 #endif
 
@@ -187,6 +270,10 @@ DEVICE_FUNCTION real layer_stack_nested_lobe(GLOBAL_CONST LayerRecord* layers, u
 /// evaluates per lane). 1/sr, no cosine.
 #if FEATURE_DEEPER_LOBES
 DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi, Vec3 wo) {
+#if FEATURE_SCATTERING_SLABS
+    if (stack.lobes[lobe].slab != NO_INDEX)
+        return layer_stack_slab_lobe(stack, lobe, wi, wo);
+#endif
 #if FEATURE_WEIDLICH_WILKIE
     if (stack.record.weidlich_wilkie == MODEL_A_PER_LANE)
         return REAL(1.0);
@@ -203,24 +290,39 @@ DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi
 DEVICE_FUNCTION real layer_stack_top(LayerStackView stack, Vec3 wi, Vec3 wo) {
     const LayerRecord top = stack.layers[0];
     const real lobe = microfacet_reflection((int)top.distribution, top.alpha, wi, wo);
-    if (top.eta_lanes != NO_INDEX)
+    if (top.eta_lanes != NO_INDEX || top.reflectance != NO_INDEX)
         return lobe;
     const Vec3 h = vec3_normalise(vec3_add(wi, wo));
     return lobe * fresnel_dielectric(fmax(vec3_dot(wi, h), REAL(0.0)), top.eta);
 }
 #endif
 
+#if FEATURE_OREN_NAYAR
+/// pi f / rho of an Oren-Nayar substrate for two directions in air, refracted down to it.
+DEVICE_FUNCTION real layer_stack_first_bounce(LayerStackView stack, Vec3 wi, Vec3 wo) {
+    const real n = stack.record.lowest_ior;
+    const Vec3 below_i = vec3(wi.x / n, wi.y / n, fresnel_cos_transmitted(wi.z, n));
+    const Vec3 below_o = vec3(wo.x / n, wo.y / n, fresnel_cos_transmitted(wo.z, n));
+    return PI_REAL * oren_nayar_value(stack.record.sigma, below_i, below_o);
+}
+#endif
+
 /// Scalar factor of the diffuse part: 1, or model A's interfaces (without absorption) where they
-/// do not depend on wavelength.
+/// do not depend on wavelength, and its Oren-Nayar substrate.
 DEVICE_FUNCTION real layer_stack_diffuse(LayerStackView stack, Vec3 wi, Vec3 wo) {
+    real factor = REAL(1.0);
+#if FEATURE_OREN_NAYAR
+    if (stack.record.sigma > 0.0f && stack.record.first_diagonal == NO_INDEX)
+        factor = layer_stack_first_bounce(stack, wi, wo);
+#endif
 #if FEATURE_WEIDLICH_WILKIE
     if (stack.record.weidlich_wilkie == MODEL_A) {
         const LayerDescent descent =
             layer_stack_descend(stack.layers, stack.record.layer_count, 0, wi, wo);
-        return descent.way_in * descent.way_out;
+        factor *= descent.way_in * descent.way_out;
     }
 #endif
-    return REAL(1.0);
+    return factor;
 }
 
 KERNELS_END

@@ -1,5 +1,6 @@
 // Stage 3: at each hit, record a vertex, sample one light and one direction. Only scalars here:
 // directions, pdfs, weights. Wavelengths come in `gather`.
+#include "kernels/environment.h"
 #include "kernels/features.h"
 #include "kernels/layer_stack.h"
 #include "kernels/lights.h"
@@ -7,6 +8,24 @@
 #include "kernels/random.h"
 #include "kernels/sampling.h"
 #include "kernels/shared.h"
+#include "kernels/texture.h"
+
+/// Random dimensions of textures, far from those of lights and directions.
+#define TEXTURE_DIMENSION 0x40000000u
+
+/// What the stage reads of the scene.
+typedef struct {
+    __global const MaterialRecord* materials;
+    __global const LayerRecord* layers;
+    __global const LobeRecord* lobes;
+    __global const SurfaceRecord* surfaces;
+    __global const TextureRecord* textures;
+    __global const LightRecord* lights;
+    __global const float* tables;
+    EnvironmentRecord image; ///< the environment where it is an image
+    uint light_count;
+    uint environment; ///< light of a constant environment, or NO_INDEX
+} ShadeScene;
 
 /// Origin moved off the surface to the side of `direction`, beyond the position's error bound
 /// (after Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th ed., section 6.8.6).
@@ -36,11 +55,60 @@ typedef struct {
     Frame frame;
     Vec3 geometric; ///< normal on the side of `to_camera`
     Vec3 wo;        ///< towards the camera, local
+    uint material;
 } SurfacePoint;
+
+#if FEATURE_TEXTURES
+/// The normal tilted by two slopes, along the horizontal on the surface and across it.
+Vec3 tilted_normal(Vec3 normal, real slope_x, real slope_y) {
+    const Vec3 horizontal = vec3(normal.z, 0.0f, -normal.x); // +y cross normal
+    const real size2 = vec3_dot(horizontal, horizontal);
+    const Vec3 tangent =
+        size2 > 1e-12f ? vec3_scale(horizontal, 1.0f / sqrt(size2)) : vec3(1.0f, 0.0f, 0.0f);
+    const Vec3 bitangent = vec3_cross(normal, tangent);
+    return vec3_normalise(
+        vec3_add(normal, vec3_add(vec3_scale(tangent, slope_x), vec3_scale(bitangent, slope_y))));
+}
+
+TexturePoint texture_here(const ShadeScene* scene, uint texture, HitRecord hit) {
+    return texture_at(scene->textures[texture],
+                      vec3(hit.position_x, hit.position_y, hit.position_z), hit.u, hit.v,
+                      scene->tables);
+}
+
+/// The material of a surface at a point, one level of each texture picked by u.a, u.b, u.c, a
+/// mixture's side by u.d; *normal is tilted where the surface says so.
+uint choose_material(const ShadeScene* scene, HitRecord hit, Random4 u, Vec3 to_camera,
+                     Vec3* normal) {
+    SurfaceRecord surface = scene->surfaces[hit.material];
+    if (surface.mixed_with != NO_INDEX) {
+        const real weight = surface.mix_texture == NO_INDEX
+                                ? surface.mix_weight
+                                : texture_here(scene, surface.mix_texture, hit).value;
+        if (u.d < weight)
+            surface = scene->surfaces[surface.mixed_with];
+    }
+    const real random[MAX_TEXTURES] = {u.a, u.b, u.c};
+    uint variant = 0u;
+    for (uint i = 0u; i < surface.texture_count; ++i) {
+        const uint levels = scene->textures[surface.textures[i]].levels;
+        variant =
+            variant * levels +
+            texture_level(texture_here(scene, surface.textures[i], hit).value, levels, random[i]);
+    }
+    if (surface.normal_texture != NO_INDEX) {
+        const TexturePoint point = texture_here(scene, surface.normal_texture, hit);
+        const Vec3 tilted = tilted_normal(*normal, point.slope_x, point.slope_y);
+        if (vec3_dot(tilted, to_camera) > 0.0f)
+            *normal = tilted;
+    }
+    return surface.first_material + variant;
+}
+#endif
 
 /// The frame stands on the shading normal, or on the geometric one where the shading normal faces
 /// away from the camera.
-SurfacePoint surface_point(HitRecord hit, RayRecord ray) {
+SurfacePoint surface_point(const ShadeScene* scene, HitRecord hit, RayRecord ray, Random4 u) {
     const Vec3 to_camera = vec3(-ray.direction_x, -ray.direction_y, -ray.direction_z);
     SurfacePoint point;
     point.hit = hit;
@@ -50,13 +118,18 @@ SurfacePoint surface_point(HitRecord hit, RayRecord ray) {
         point.geometric = vec3_scale(point.geometric, -1.0f);
         shading = vec3_scale(shading, -1.0f);
     }
-    point.frame = sampling_frame(vec3_dot(shading, to_camera) > 0.0f ? shading : point.geometric);
+    shading = vec3_dot(shading, to_camera) > 0.0f ? shading : point.geometric;
+    point.material = hit.material;
+#if FEATURE_TEXTURES
+    point.material = choose_material(scene, hit, u, to_camera, &shading);
+#endif
+    point.frame = sampling_frame(shading);
     point.wo = sampling_to_local(point.frame, to_camera);
     return point;
 }
 
 VertexRecord empty_vertex(void) {
-    const DirectionRecord nothing = {0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f};
+    const DirectionRecord nothing = {0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f};
     VertexRecord vertex = {NO_INDEX, NO_INDEX, 0.0f, NO_INDEX, 0.0f,
                            0.0f,     1.0f,     0u,   nothing,  nothing};
     return vertex;
@@ -78,8 +151,12 @@ real emission_weight(LightRecord light, RayRecord ray, HitRecord hit, real bsdf_
 /// The scalar weights of all components in one direction; `scale` holds cos / pdf.
 DirectionRecord direction_weights(LayerStackView stack, Vec3 wi, Vec3 wo, real scale,
                                   __global float* lobe_weights) {
-    DirectionRecord d = {wi.x, wi.y, wi.z, 0.0f, 0.0f, 0.0f};
+    DirectionRecord d = {wi.x, wi.y, wi.z, 0.0f, 0.0f, 0.0f, 0.0f};
     d.diffuse = scale * layer_stack_diffuse(stack, wi, wo);
+#if FEATURE_OREN_NAYAR
+    if (stack.record.first_diagonal != NO_INDEX)
+        d.first = scale * layer_stack_first_bounce(stack, wi, wo);
+#endif
 #if FEATURE_ROUGH
     if (stack.record.has_top_lobe)
         d.top = scale * layer_stack_top(stack, wi, wo);
@@ -91,19 +168,40 @@ DirectionRecord direction_weights(LayerStackView stack, Vec3 wi, Vec3 wo, real s
     return d;
 }
 
+#if FEATURE_ENVIRONMENT_IMAGE
+LightSample sample_environment(const ShadeScene* scene, real u1, real u2, __global float* colour) {
+    LightSample sample;
+    sample.direction = environment_sample(scene->image, scene->tables, u1, u2);
+    sample.distance = 1e30f;
+    const EnvironmentPlace place = environment_place(scene->image, sample.direction);
+    sample.pdf = environment_pdf(scene->image, scene->tables, place);
+    sample.weight = sample.pdf > 0.0f ? 1.0f / sample.pdf : 0.0f;
+    for (uint c = 0u; c < 3u; ++c)
+        colour[c] = environment_colour(scene->image, scene->tables, place, c);
+    return sample;
+}
+#endif
+
 #if FEATURE_LIGHT_SAMPLING
 /// Samples one light by selection probability; fills the vertex and returns the shadow ray
 /// (inactive when the light cannot contribute).
-RayRecord sample_light(SurfacePoint point, LayerStackView stack, const LayerChoice* choice,
-                       __global const LightRecord* lights, uint light_count, Random4 u,
-                       VertexRecord* vertex, __global float* lobe_weights) {
+RayRecord sample_light(const ShadeScene* scene, SurfacePoint point, LayerStackView stack,
+                       const LayerChoice* choice, Random4 u, VertexRecord* vertex,
+                       __global float* lobe_weights, __global float* colour) {
     RayRecord inactive = ray_record(vec3(0.0f, 0.0f, 0.0f), vec3(0.0f, 0.0f, 1.0f), -1.0f);
     uint chosen = 0u;
-    while (chosen + 1u < light_count && u.a >= lights[chosen].cumulative)
+    while (chosen + 1u < scene->light_count && u.a >= scene->lights[chosen].cumulative)
         ++chosen;
-    const LightRecord light = lights[chosen];
-    const Vec3 position = vec3(point.hit.position_x, point.hit.position_y, point.hit.position_z);
-    const LightSample sample = lights_sample(light, position, u.b, u.c);
+    const LightRecord light = scene->lights[chosen];
+    LightSample sample;
+#if FEATURE_ENVIRONMENT_IMAGE
+    if (light.type == LIGHT_ENVIRONMENT)
+        sample = sample_environment(scene, u.b, u.c, colour);
+    else
+#endif
+        sample = lights_sample(
+            light, vec3(point.hit.position_x, point.hit.position_y, point.hit.position_z), u.b,
+            u.c);
     const Vec3 wi = sampling_to_local(point.frame, sample.direction);
     if (!(sample.weight > 0.0f) || !(light.selection > 0.0f) || !(wi.z > 0.0f) ||
         !(vec3_dot(point.geometric, sample.direction) > 0.0f))
@@ -133,7 +231,8 @@ RayRecord sample_direction(SurfacePoint point, LayerStackView stack, const Layer
     *pdf = is_delta ? -1.0f : layer_stack_pdf(stack, choice, point.wo, wi);
     if (is_delta) {
         const DirectionRecord mirror = {
-            wi.x, wi.y, wi.z, 0.0f, 0.0f, 1.0f / (choice->cumulative[CHOICE_DELTA] * survival)};
+            wi.x, wi.y, wi.z, 0.0f, 0.0f, 1.0f / (choice->cumulative[CHOICE_DELTA] * survival),
+            0.0f};
         vertex->next = mirror;
 #if FEATURE_DEEPER_LOBES
         for (uint l = 0u; l < stack.record.lobe_count; ++l)
@@ -149,24 +248,45 @@ RayRecord sample_direction(SurfacePoint point, LayerStackView stack, const Layer
     return ray_record(offset_origin(point.hit, direction), direction, INFINITY);
 }
 
+#if FEATURE_ENVIRONMENT_IMAGE
+/// Weight of the image's radiance for a direction found by chance (MIS); stores its colour.
+real environment_weight(const ShadeScene* scene, RayRecord ray, real bsdf_pdf,
+                        __global float* colour) {
+    const EnvironmentPlace place =
+        environment_place(scene->image, vec3(ray.direction_x, ray.direction_y, ray.direction_z));
+    for (uint c = 0u; c < 3u; ++c)
+        colour[c] = environment_colour(scene->image, scene->tables, place, c);
+    if (bsdf_pdf < 0.0f)
+        return 1.0f;
+    return lights_mis_weight(bsdf_pdf, scene->lights[scene->image.light].selection *
+                                           environment_pdf(scene->image, scene->tables, place));
+}
+#endif
+
 /// A path that left the scene or met a light ends with one record of what it sees there.
 /// Returns 1 when it did.
-int end_on_emitter(RayRecord ray, HitRecord hit, PathState state,
-                   __global const LightRecord* lights, uint environment,
-                   __global VertexRecord* vertex, __global PathState* path, uint depth) {
+int end_on_emitter(const ShadeScene* scene, RayRecord ray, HitRecord hit, PathState state,
+                   __global VertexRecord* vertex, __global PathState* path, __global float* colour,
+                   uint depth) {
     if (hit.shape != NO_INDEX && hit.light == NO_INDEX)
         return 0;
     VertexRecord record = empty_vertex();
 #if FEATURE_ENVIRONMENT
     if (hit.light == NO_INDEX) {
-        record.emitter = environment;
-        record.emitted = environment == NO_INDEX ? 0.0f : 1.0f;
+        record.emitter = scene->environment;
+        record.emitted = scene->environment == NO_INDEX ? 0.0f : 1.0f;
+    }
+#endif
+#if FEATURE_ENVIRONMENT_IMAGE
+    if (hit.light == NO_INDEX && scene->image.light != NO_INDEX) {
+        record.emitter = scene->image.light;
+        record.emitted = environment_weight(scene, ray, state.bsdf_pdf, colour);
     }
 #endif
 #if FEATURE_AREA_LIGHTS
     if (hit.light != NO_INDEX) {
         record.emitter = hit.light;
-        record.emitted = emission_weight(lights[hit.light], ray, hit, state.bsdf_pdf);
+        record.emitted = emission_weight(scene->lights[hit.light], ray, hit, state.bsdf_pdf);
     }
 #endif
     if (record.emitted > 0.0f) {
@@ -179,13 +299,17 @@ int end_on_emitter(RayRecord ray, HitRecord hit, PathState state,
 __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
                     __global PathState* paths, __global VertexRecord* vertices,
                     __global RayRecord* shadow_rays, __global float* lobe_weights,
-                    __global const MaterialRecord* materials, __global const LayerRecord* layers,
-                    __global const LobeRecord* lobes, __global const LightRecord* lights,
-                    __global const float* tables, uint path_count, uint capacity, uint depth,
+                    __global float* colours, __global const MaterialRecord* materials,
+                    __global const LayerRecord* layers, __global const LobeRecord* lobes,
+                    __global const SurfaceRecord* surfaces, __global const TextureRecord* textures,
+                    __global const LightRecord* lights, __global const float* tables,
+                    EnvironmentRecord image, uint path_count, uint capacity, uint depth,
                     uint max_depth, uint min_depth, uint light_count, uint environment, uint seed) {
     const uint path = (uint)get_global_id(0);
     if (path >= path_count)
         return;
+    const ShadeScene scene = {materials, layers, lobes, surfaces,    textures,
+                              lights,    tables, image, light_count, environment};
     const uint slot = depth * capacity + path;
     const RayRecord ray = rays[path];
 #if FEATURE_LIGHT_SAMPLING
@@ -196,30 +320,44 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
     rays[path].t_far = -1.0f;
     const HitRecord hit = hits[path];
     PathState state = paths[path];
-    if (end_on_emitter(ray, hit, state, lights, environment, vertices + slot, paths + path,
-                       depth) ||
+    __global float* colour = colours;
+#if FEATURE_COLOURS
+    colour += (size_t)slot * VERTEX_COLOURS;
+#endif
+    if (end_on_emitter(&scene, ray, hit, state, vertices + slot, paths + path, colour, depth) ||
         depth >= max_depth)
         return;
 
-    const SurfacePoint point = surface_point(hit, ray);
+    const SurfacePoint point = surface_point(
+        &scene, hit, ray, random_4(state.pixel, state.sample, TEXTURE_DIMENSION + depth, seed));
     LayerStackView stack;
-    stack.record = materials[hit.material];
+    stack.record = materials[point.material];
     stack.layers = layers + stack.record.first_layer;
     stack.lobes = lobes + stack.record.first_lobe;
     stack.choice = tables + stack.record.choice;
     const LayerChoice choice = layer_stack_choice(stack, point.wo.z);
     __global float* next_lobes = lobe_weights + (size_t)slot * (2u * LOBES);
     VertexRecord vertex = empty_vertex();
-    vertex.material = hit.material;
+    vertex.material = point.material;
     vertex.out_x = point.wo.x;
     vertex.out_y = point.wo.y;
     vertex.out_z = point.wo.z;
+#if FEATURE_REFLECTANCE_IMAGE
+    if (stack.record.reflectance_image != NO_INDEX) {
+        const TexturePoint texel =
+            texture_at(textures[stack.record.reflectance_image],
+                       vec3(hit.position_x, hit.position_y, hit.position_z), hit.u, hit.v, tables);
+        colour[3] = texel.red;
+        colour[4] = texel.green;
+        colour[5] = texel.blue;
+    }
+#endif
 
 #if FEATURE_LIGHT_SAMPLING
     if (light_count > 0u)
-        shadow_rays[slot] = sample_light(point, stack, &choice, lights, light_count,
+        shadow_rays[slot] = sample_light(&scene, point, stack, &choice,
                                          random_4(state.pixel, state.sample, 2u * depth + 1u, seed),
-                                         &vertex, next_lobes + LOBES);
+                                         &vertex, next_lobes + LOBES, colour);
 #endif
 
     const Random4 u = random_4(state.pixel, state.sample, 2u * depth + 2u, seed);

@@ -46,6 +46,8 @@ ASSERT_SIZE(HitRecord, 64);
 /// Nodes of a table over cos(theta): u = sqrt(cos) in TABLE_NODES - 1 equal steps (table.h).
 #define TABLE_NODES 65
 #define MAX_LAYERS 64
+/// Floats a vertex keeps when images colour lights or reflectances: emitter or light, reflectance.
+#define VERTEX_COLOURS 6
 
 #define LIGHT_RECTANGLE 0
 #define LIGHT_SPHERE 1
@@ -67,6 +69,53 @@ typedef struct {
 } LightRecord;
 ASSERT_SIZE(LightRecord, 72);
 
+/// An environment that is an image: offsets into the tables. light = NO_INDEX: there is none.
+typedef struct {
+    shared_uint light;
+    shared_uint image;       ///< [row][column][rgb]
+    shared_uint density;     ///< [row][column]: texel's probability times the number of texels
+    shared_uint conditional; ///< [row][column]: cumulative within the row, from 0, without the 1
+    shared_uint marginal;    ///< [row]: cumulative over the rows
+    shared_uint width, height;
+    shared_float rotation; ///< in turns
+} EnvironmentRecord;
+ASSERT_SIZE(EnvironmentRecord, 32);
+
+#define TEXTURE_NOISE 0
+#define TEXTURE_VORONOI 1
+#define TEXTURE_CHECKER 2
+#define TEXTURE_IMAGE 3
+#define TEXTURE_WORLD 0
+#define TEXTURE_UV 1
+/// Textures that the variants of one surface depend on.
+#define MAX_TEXTURES 3
+
+typedef struct {
+    shared_uint type, space;
+    shared_float inverse_size;
+    shared_uint octaves;
+    shared_float tilt; ///< tangent of the standard deviation of the normals' tilt
+    shared_float sharpness;
+    shared_uint image; ///< offset of its texels in the tables
+    shared_uint width, height;
+    shared_uint is_normal_map;
+    shared_uint levels;
+    shared_uint seed;
+} TextureRecord;
+ASSERT_SIZE(TextureRecord, 48);
+
+/// What a shape refers to: a block of materials, one for every combination of levels.
+typedef struct {
+    shared_uint first_material;
+    shared_uint texture_count;
+    shared_uint textures[MAX_TEXTURES]; ///< the last runs fastest
+    shared_uint normal_texture;         ///< or NO_INDEX
+    shared_uint mixed_with;             ///< surface, or NO_INDEX
+    shared_float mix_weight;
+    shared_uint mix_texture; ///< or NO_INDEX
+} SurfaceRecord;
+ASSERT_SIZE(SurfaceRecord, 36);
+
 typedef struct {
     shared_float origin_x, origin_y, origin_z;
     shared_float lens_radius;
@@ -79,21 +128,26 @@ typedef struct {
 } CameraRecord;
 ASSERT_SIZE(CameraRecord, 64);
 
-/// One interface for the scalar evaluation of rough lobes.
+/// What a material's stack is made of, from the air down, for the scalar evaluation of its lobes:
+/// interfaces, sheets of flakes, and a conductor at the end.
 typedef struct {
     shared_float eta;   ///< IOR below over IOR above (at the reference wavelength if dispersive)
     shared_float alpha; ///< 0: smooth
     shared_uint distribution;
-    shared_uint eta_lanes; ///< offset of eta per lane, [phase][lane]; NO_INDEX if not dispersive
+    shared_uint eta_lanes;   ///< offset of eta per lane, [phase][lane]; NO_INDEX if not dispersive
+    shared_float coverage;   ///< > 0: a sheet of flakes, the share of light that meets one
+    shared_uint reflectance; ///< [phase][node][lane] over the cosine at the facet; NO_INDEX:
+                             ///< Fresnel reflectance by eta
 } LayerRecord;
-ASSERT_SIZE(LayerRecord, 16);
+ASSERT_SIZE(LayerRecord, 24);
 
-/// A rough lobe of an interface below the first one, in air half-vector space.
+/// A rough lobe of anything below the first interface, in air half-vector space, or what a slab
+/// scatters.
 typedef struct {
-    shared_float alpha;
+    shared_float alpha; ///< a slab's lobe: anisotropy g
     shared_uint distribution;
-    shared_uint layer; ///< index of its interface within the material's stack
-    shared_uint padding;
+    shared_uint layer; ///< index within the material's layers; a slab's: of what lies above it
+    shared_uint slab;  ///< [2][phase][lane]: optical depth and albedo; NO_INDEX: a rough lobe
 } LobeRecord;
 ASSERT_SIZE(LobeRecord, 16);
 
@@ -115,14 +169,21 @@ typedef struct {
     shared_uint
         choice; ///< [node][4 + LOBES]: cumulative: delta, top, lobes..., diffuse; then albedo
     shared_uint first_layer; ///< into the layers
-    shared_uint layer_count;
+    shared_uint layer_count; ///< interfaces and sheets above the substrate; a conductor follows
     shared_uint lobe_count;
     shared_uint first_lobe; ///< into the lobes
     shared_uint has_top_lobe;
     shared_uint weidlich_wilkie; ///< 0, or MODEL_A: rough factors of model A on the diffuse part
     shared_uint rank;
+    shared_uint reflectance_image; ///< texture that colours the reflectance, or NO_INDEX
+    shared_uint image_reflectance; ///< [4][phase][lane]: r of the stack, then the spectra that the
+                                   ///< image's red, green and blue stand for
+    shared_float sigma;            ///< oren-nayar, radians; 0: lambert
+    shared_float lowest_ior;    ///< of the medium above the substrate, at the reference wavelength
+    shared_uint first_diagonal; ///< oren-nayar: the substrate's own operator, like the others
+    shared_uint first_factors, first_dense;
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 64);
+ASSERT_SIZE(MaterialRecord, 92);
 
 /// State of a path between stages.
 typedef struct {
@@ -140,10 +201,11 @@ ASSERT_SIZE(PathState, 24);
 typedef struct {
     shared_float x, y, z; ///< direction, local frame
     shared_float diffuse; ///< times T(o) B T(i), and the residual's product
-    shared_float top;     ///< times Fresnel (already inside unless dispersive)
+    shared_float top;     ///< times Fresnel (already inside unless it depends on wavelength)
     shared_float delta;   ///< times the delta table
+    shared_float first;   ///< oren-nayar: times T(o) M T(i), light that met the substrate once
 } DirectionRecord;
-ASSERT_SIZE(DirectionRecord, 24);
+ASSERT_SIZE(DirectionRecord, 28);
 
 /// What happened where a path met a surface (or a light, or the environment).
 typedef struct {
@@ -155,7 +217,7 @@ typedef struct {
     shared_uint has_next;             ///< the path goes on
     DirectionRecord next, towards_light;
 } VertexRecord;
-ASSERT_SIZE(VertexRecord, 80);
+ASSERT_SIZE(VertexRecord, 88);
 
 #ifndef __OPENCL_VERSION__
 } // namespace reradiant

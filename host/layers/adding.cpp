@@ -1,8 +1,8 @@
 #include "host/layers/adding.h"
 
 #include "host/error.h"
-#include "host/layers/rough_system.h"
-#include "host/layers/rough_transport.h"
+#include "host/layers/angular_system.h"
+#include "host/layers/angular_transport.h"
 #include "host/layers/smooth_transport.h"
 
 #include <fmt/format.h>
@@ -22,6 +22,13 @@ void check_layer(const LayerValues& layer, std::size_t index) {
     if (!(layer.ior > 0.0) || !std::isfinite(layer.ior)) {
         refuse("index of refraction", layer.ior, "it must be a positive number");
     }
+    if (!(layer.tau_scattering >= 0.0)) {
+        refuse("scattering depth", layer.tau_scattering,
+               "scattering coefficient and thickness must not be negative");
+    }
+    if (!(std::fabs(layer.anisotropy) < 1.0)) {
+        refuse("anisotropy", layer.anisotropy, "it must lie between -1 and 1");
+    }
     if (!(layer.tau >= 0.0)) {
         refuse("optical depth", layer.tau, "absorption and thickness must not be negative");
     }
@@ -30,7 +37,8 @@ void check_layer(const LayerValues& layer, std::size_t index) {
     }
 }
 
-/// The last transports of rough stacks: a grey material asks for the same one at every wavelength.
+/// The last transports of stacks that scatter: a grey material asks for the same one at every
+/// wavelength.
 class RecentTransports {
 public:
     std::shared_ptr<const AddingTransport> find(const StackValues& stack) {
@@ -55,22 +63,45 @@ private:
     std::deque<std::pair<StackValues, std::shared_ptr<const AddingTransport>>> recent_;
 };
 
+constexpr const char* flakes_reason = "adding does not know flakes";
+constexpr const char* film_reason = "adding does not know films on rough interfaces";
+
+bool has_rough_film(const StackValues& stack, std::size_t index) {
+    return stack[index].film.thickness_nm > 0.0 && is_rough_interface(stack, index);
+}
+
 } // namespace
 
+std::optional<std::string> adding_refusal(const LayerStack& stack) {
+    for (const Layer& layer : stack.layers) {
+        if (layer.flakes && layer.flakes->coverage > 0.0) {
+            return flakes_reason;
+        }
+        if (layer.film && layer.film->thickness_nm > 0.0 && layer.alpha > 0.0) {
+            return film_reason;
+        }
+    }
+    return std::nullopt;
+}
+
 std::shared_ptr<const AddingTransport> adding_transport(const StackValues& stack) {
-    bool rough = false;
+    bool scatters = false;
     for (std::size_t k = 0; k < stack.size(); ++k) {
         check_layer(stack[k], k);
-        rough = rough || is_rough_interface(stack, k);
+        if (stack[k].flake_coverage > 0.0 || has_rough_film(stack, k)) {
+            throw_input_error({}, stack[k].flake_coverage > 0.0 ? flakes_reason : film_reason,
+                              "use the model walk or weidlich-wilkie");
+        }
+        scatters = scatters || is_rough_interface(stack, k) || stack[k].tau_scattering > 0.0;
     }
-    if (!rough) {
+    if (!scatters) {
         return smooth_transport(stack);
     }
     static RecentTransports recent;
     if (auto known = recent.find(stack)) {
         return known;
     }
-    auto transport = rough_transport(stack);
+    auto transport = angular_transport(stack);
     recent.remember(stack, transport);
     return transport;
 }

@@ -3,6 +3,8 @@
 #include "host/layers/stack.h"
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace reradiant {
@@ -17,7 +19,8 @@ namespace reradiant {
 /// + sum over deeper rough lobes l: a_l(ci) a_l(co) D_l(h) G2_l / (4 ci co), h = half vector in
 ///   air, a_l >= 0 tabulated so that the lobe carries the flux that its interface sends back
 /// + residual(ci) residual(co) / (pi residual_average): what is left of the specular flux
-///   (multiple scattering between facets and layers), reciprocal (Kelemen-Szirmay-Kalos 2001).
+///   (multiple scattering between facets and layers, and what slabs scatter back), reciprocal
+///   (Kelemen-Szirmay-Kalos 2001).
 /// The integral over co of everything equals `specular_albedo(ci)`.
 class AddingTransport {
 public:
@@ -27,6 +30,9 @@ public:
     virtual double transmission(double cos_theta) const = 0;
     /// Share r of diffusely emitted flux that comes back down to the substrate.
     virtual double internal_reflectance() const = 0;
+    /// The same for an Oren-Nayar substrate: light is emitted and counted with the weights of
+    /// its directional albedo (host/layers/oren_nayar_substrate.h). sigma 0 is the above.
+    virtual double internal_reflectance(double sigma) const = 0;
     /// IOR n_k of the medium above the substrate (1 for a bare one).
     virtual double lowest_ior() const = 0;
     /// Share of the flux from cos_theta that leaves again without reaching the substrate.
@@ -49,9 +55,14 @@ public:
     virtual double lost(double cos_theta) const = 0;
 };
 
-/// Cheap for smooth stacks (closed form); for rough ones the interfaces' scattering operators
+/// Why adding cannot do a stack, or nothing: it knows no flakes, and an operator of a rough
+/// interface for each wavelength of a film costs too much (about a second each).
+std::optional<std::string> adding_refusal(const LayerStack& stack);
+
+/// Cheap for smooth clear stacks (closed form); for rough ones the interfaces' scattering operators
 /// are computed once per (IOR ratio, distribution, alpha, scattering) and kept in memory and in
-/// the disk cache. Thread-safe.
+/// the disk cache; slabs that scatter take some 10 ms each. Thread-safe. Input Error for numbers
+/// out of range and for what adding cannot do.
 std::shared_ptr<const AddingTransport> adding_transport(const StackValues& stack);
 
 } // namespace reradiant

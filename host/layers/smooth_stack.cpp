@@ -1,5 +1,8 @@
 #include "host/layers/smooth_stack.h"
 
+#include "kernels/thin_film.h"
+
+#include <algorithm>
 #include <cmath>
 
 namespace reradiant {
@@ -21,7 +24,46 @@ FresnelPair fresnel_pair(double n_above, double n_below, double g2_above, double
     return {0.5 * (ts + tp), 0.5 * (rs * rs + rp * rp)};
 }
 
+SmoothStack smooth_media(const StackValues& stack, std::size_t first, std::size_t last,
+                         bool unscattered) {
+    SmoothStack media;
+    for (std::size_t k = first; k <= last; ++k) {
+        if (k == 0) {
+            media.ior.push_back(1.0);
+            media.tau.push_back(0.0);
+            continue;
+        }
+        const LayerValues& layer = stack[k - 1];
+        const bool clear = layer.tau_scattering > 0.0 && !unscattered;
+        media.ior.push_back(layer.ior);
+        media.tau.push_back(clear ? 0.0 : layer.tau + layer.tau_scattering);
+        if (k > first) {
+            media.film.push_back(layer.film);
+            media.wavelength_nm = std::max(media.wavelength_nm, layer.wavelength_nm);
+        }
+    }
+    return media;
+}
+
 namespace {
+
+/// The two shares at interface k of a stack.
+FresnelPair interface_pair(const SmoothStack& stack, std::size_t k, double g2_above,
+                           double g2_below) {
+    const double n_above = stack.ior[k], n_below = stack.ior[k + 1];
+    const bool filmed = k < stack.film.size() && stack.film[k].thickness_nm > 0.0;
+    if (!filmed) {
+        return fresnel_pair(n_above, n_below, g2_above, g2_below);
+    }
+    if (g2_above <= 0.0 || g2_below <= 0.0) {
+        return {0.0, 1.0};
+    }
+    const double cosine = std::min(std::sqrt(g2_above) / n_above, 1.0);
+    const double r =
+        kernels::thin_film_reflectance(cosine, n_above, stack.film[k].ior, n_below, 0.0,
+                                       stack.film[k].thickness_nm, stack.wavelength_nm);
+    return {1.0 - r, r};
+}
 
 /// Optical depth along the path; infinite where the path is evanescent in an absorber.
 double slant_depth(double tau, double ior, double g2) {
@@ -57,7 +99,7 @@ SmoothResponse smooth_response_g2(const SmoothStack& stack, double reference_ior
             break;
         }
         const double below = g2_of(k + 1);
-        const FresnelPair f = fresnel_pair(stack.ior[k], stack.ior[k + 1], g2, below);
+        const FresnelPair f = interface_pair(stack, k, g2, below);
         // 1 - rf R' with R' = 1 - w, as a sum of positive terms
         const double divisor = f.transmittance + f.reflectance * w;
         if (divisor > 0.0) {

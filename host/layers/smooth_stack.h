@@ -1,15 +1,25 @@
 #pragma once
 
+#include "host/layers/stack.h"
+
 #include <vector>
 
 namespace reradiant {
 
 /// A pile of plane-parallel media with smooth interfaces between them: from above, media
 /// ior[0] ... ior[m] with optical depths tau[0] ... tau[m] (0 for a medium without thickness).
+/// film[k] lies on the interface between media k and k + 1; none when the list is shorter.
 struct SmoothStack {
     std::vector<double> ior;
     std::vector<double> tau;
+    std::vector<FilmValues> film = {};
+    double wavelength_nm = 0.0; ///< of films
 };
+
+/// Media `first` to `last` of a stack, medium 0 is the air and medium k lies under interface k - 1.
+/// Media that scatter count as clear, or with `unscattered` as absorbing what they scatter.
+SmoothStack smooth_media(const StackValues& stack, std::size_t first, std::size_t last,
+                         bool unscattered = false);
 
 /// What a pile does to a flux along one refracted path. `transmission` holds in both directions
 /// (reciprocity). `loss_up` = 1 - (share of flux from below that comes back down): kept instead of

@@ -1,5 +1,6 @@
 #include "host/layers/smooth_transport.h"
 
+#include "host/layers/oren_nayar_substrate.h"
 #include "host/layers/quadrature.h"
 #include "host/layers/smooth_stack.h"
 
@@ -15,17 +16,20 @@ constexpr int integration_nodes = 64;
 class SmoothTransport final : public AddingTransport {
 public:
     explicit SmoothTransport(const StackValues& stack) {
-        stack_.ior.push_back(1.0);
-        stack_.tau.push_back(0.0);
-        for (const LayerValues& layer : stack) {
-            stack_.ior.push_back(layer.ior);
-            stack_.tau.push_back(layer.tau);
-        }
-        internal_reflectance_ = integrate_internal_reflectance();
+        stack_ = smooth_media(stack, 0, stack.size());
+        internal_reflectance_ =
+            1.0 - integrate_over_lowest([](double loss_up, double) { return loss_up; });
+        internal_reflectance_ = std::clamp(internal_reflectance_, 0.0, 1.0);
     }
 
     double transmission(double c) const override { return response(c).transmission; }
     double internal_reflectance() const override { return internal_reflectance_; }
+    double internal_reflectance(double sigma) const override {
+        return oren_nayar_feedback(sigma, internal_reflectance_, [&](const SubstrateWeight& w) {
+            return integrate_over_lowest(
+                [&](double loss_up, double c) { return square(w(c)) * (1.0 - loss_up); });
+        });
+    }
     double lowest_ior() const override { return stack_.ior.back(); }
     double specular_albedo(double c) const override { return response(c).reflection_down; }
     double specular_delta(double c) const override { return response(c).reflection_down; }
@@ -41,19 +45,20 @@ private:
         return smooth_response(stack_, 1.0, std::clamp(c, 0.0, 1.0));
     }
 
-    /// 1 - 2 integral (1 - R_up) c dc over the lowest medium, split at every critical cosine and
-    /// at the scale where a denser medium above changes the path.
-    double integrate_internal_reflectance() const {
+    static double square(double x) { return x * x; }
+
+    /// 2 integral of a function of (1 - R_up, c) c dc over the lowest medium, split at every
+    /// critical cosine and at the scale where a denser medium above changes the path.
+    template <typename Function>
+    double integrate_over_lowest(const Function& function) const {
         const double n = stack_.ior.back();
         std::vector<double> inner;
         for (const double above : stack_.ior) {
             inner.push_back(std::sqrt(std::fabs((n - above) * (n + above))) / n);
         }
-        const double loss =
-            integrate_pieces(breaks_between_0_and_1(inner), integration_nodes, [&](double c) {
-                return 2.0 * c * smooth_response(stack_, n, c).loss_up;
-            });
-        return std::clamp(1.0 - loss, 0.0, 1.0);
+        return integrate_pieces(breaks_between_0_and_1(inner), integration_nodes, [&](double c) {
+            return 2.0 * c * function(smooth_response(stack_, n, c).loss_up, c);
+        });
     }
 
     SmoothStack stack_;

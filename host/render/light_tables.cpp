@@ -1,4 +1,6 @@
+#include "host/render/environment_tables.h"
 #include "host/render/scene_tables.h"
+#include "host/spectral/rgb_basis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,9 +70,10 @@ struct DescribeLight {
         set_normal(record, light.direction);
         return std::numbers::pi;
     }
-    double operator()(const EnvironmentLight&) const {
+    /// A constant environment is found by the paths' own directions, an image is sampled too.
+    double operator()(const EnvironmentLight& light) const {
         record.type = LIGHT_ENVIRONMENT;
-        return 0.0;
+        return light.image >= 0 ? 4.0 * std::numbers::pi * std::numbers::pi : 0.0;
     }
 };
 
@@ -90,8 +93,8 @@ double lane_value(const Spectrum& spectrum, const Spectrum& on_comb, const Wavel
     return power;
 }
 
-/// Appends [phase][lane]; returns the mean value over lanes.
-double append_spectrum(const Spectrum& spectrum, const WavelengthPlan& plan,
+/// Appends [phase][lane] of a spectrum times a smooth factor; returns the mean value over lanes.
+double append_spectrum(const Spectrum& spectrum, const Spectrum& factor, const WavelengthPlan& plan,
                        std::vector<float>& tables) {
     Spectrum on_comb = spectrum.without_lines();
     for (const SpectralLine& line : spectrum.lines())
@@ -101,8 +104,9 @@ double append_spectrum(const Spectrum& spectrum, const WavelengthPlan& plan,
     double sum = 0.0;
     for (int phase = 0; phase < plan.phases; ++phase)
         for (int lane = 0; lane < plan.padded_lanes(); ++lane) {
-            const double value =
-                lane < lanes ? lane_value(spectrum, on_comb, plan, lane, phase) : 0.0;
+            const double value = lane < lanes ? lane_value(spectrum, on_comb, plan, lane, phase) *
+                                                    factor(plan.wavelength_nm(lane, phase))
+                                              : 0.0;
             tables.push_back(narrow(value));
             const bool is_line = lane < lanes && plan.lanes[static_cast<std::size_t>(lane)].is_line;
             sum += is_line ? value / plan.comb.step_nm : value;
@@ -129,23 +133,55 @@ void set_selection(std::vector<LightRecord>& lights, const std::vector<double>& 
 
 } // namespace
 
+namespace {
+
+/// The image's spectra: what its red, green and blue stand for, [3][phase][lane]; returns their
+/// mean over lanes and colours.
+double append_image_spectra(const EnvironmentLight& sky, const WavelengthPlan& plan,
+                            std::vector<float>& tables) {
+    double mean = 0.0;
+    for (const Spectrum& primary : rgb_basis())
+        mean += append_spectrum(sky.radiance, primary, plan, tables) / 3.0;
+    return mean;
+}
+
+/// Mean of each light's spectrum, its tables appended. Constant environments are one: the first
+/// holds their sum.
+double append_light_spectrum(const Scene& scene, const Light& light, const WavelengthPlan& plan,
+                             SceneTables& tables) {
+    const Spectrum one = Spectrum::constant(1.0);
+    const auto* sky = std::get_if<EnvironmentLight>(&light);
+    if (sky == nullptr)
+        return append_spectrum(light_spectrum(light), one, plan, tables.tables);
+    const auto index = static_cast<std::uint32_t>(tables.lights.size());
+    if (sky->image >= 0) {
+        const Image& image = scene.images[static_cast<std::size_t>(sky->image)];
+        const double mean = append_image_spectra(*sky, plan, tables.tables);
+        tables.image = append_environment_image(image, sky->rotation_deg, tables.tables);
+        tables.image.light = index;
+        tables.features.environment_image = true;
+        return mean * mean_over_sphere(image);
+    }
+    Spectrum sum;
+    for (const Light& other : scene.lights)
+        if (const auto* constant = std::get_if<EnvironmentLight>(&other);
+            constant && constant->image < 0)
+            sum += constant->radiance;
+    const double mean = append_spectrum(sum, one, plan, tables.tables);
+    if (tables.environment == NO_INDEX && mean > 0.0)
+        tables.environment = index;
+    return mean;
+}
+
+} // namespace
+
 void append_lights(const Scene& scene, const WavelengthPlan& plan, SceneTables& tables) {
     std::vector<double> powers;
-    Spectrum environment;
-    for (const Light& light : scene.lights)
-        if (const auto* sky = std::get_if<EnvironmentLight>(&light))
-            environment += sky->radiance;
     for (const Light& light : scene.lights) {
         LightRecord record{};
         const double factor = std::visit(DescribeLight{record}, light);
-        const bool is_environment = record.type == LIGHT_ENVIRONMENT;
         record.spectrum = static_cast<std::uint32_t>(tables.tables.size());
-        // Several environments are one: the first holds their sum.
-        const double mean = append_spectrum(is_environment ? environment : light_spectrum(light),
-                                            plan, tables.tables);
-        powers.push_back(factor * mean);
-        if (is_environment && tables.environment == NO_INDEX && mean > 0.0)
-            tables.environment = static_cast<std::uint32_t>(tables.lights.size());
+        powers.push_back(factor * append_light_spectrum(scene, light, plan, tables));
         tables.features.area_lights |=
             record.type == LIGHT_RECTANGLE || record.type == LIGHT_SPHERE;
         tables.features.delta_lights |=

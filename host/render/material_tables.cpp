@@ -1,6 +1,7 @@
 #include "host/render/scene_tables.h"
 #include "host/render/stack_optics.h"
 #include "host/render/substrate_operator.h"
+#include "host/spectral/rgb_basis.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -93,7 +94,8 @@ private:
             const double ior = layer.ior(reference_nm);
             out_.layers.push_back(
                 {static_cast<float>(ior / above), static_cast<float>(layer.alpha),
-                 static_cast<std::uint32_t>(kernel_distribution(layer.distribution)), NO_INDEX});
+                 static_cast<std::uint32_t>(kernel_distribution(layer.distribution)), NO_INDEX,
+                 0.0f, NO_INDEX});
             above = ior;
         }
         const bool has_top = record_.layer_count > 0 && material_.stack.layers.front().alpha > 0.0;
@@ -133,7 +135,7 @@ private:
             out_.lobes.push_back(
                 {static_cast<float>(lobes[l].alpha),
                  static_cast<std::uint32_t>(kernel_distribution(lobes[l].distribution)),
-                 static_cast<std::uint32_t>(layers.at(l)), 0u});
+                 static_cast<std::uint32_t>(layers.at(l)), NO_INDEX});
         out_.features.deeper_lobes |= !lobes.empty();
     }
 
@@ -187,9 +189,14 @@ private:
             operators_.push_back(
                 lane_operator(material_.substrate, on_cells, plan_, phase, r, scale));
         }
-        record_.diagonal = append_lanes([&](int lane, int phase) {
-            return operators_[static_cast<std::size_t>(phase)].diagonal(lane);
-        });
+        record_.first_diagonal = record_.first_factors = record_.first_dense = NO_INDEX;
+        record_.reflectance_image = NO_INDEX;
+        if (material_.substrate.reflectance_image >= 0)
+            append_image_reflectance();
+        else
+            record_.diagonal = append_lanes([&](int lane, int phase) {
+                return operators_[static_cast<std::size_t>(phase)].diagonal(lane);
+            });
         record_.factors = NO_INDEX;
         record_.dense = NO_INDEX;
         record_.rank = 0;
@@ -200,6 +207,23 @@ private:
             append_factors();
         else
             append_dense();
+    }
+
+    /// A reflectance that an image colours is put together by the kernel: the diagonal holds the
+    /// factor of the substrate's operator alone.
+    void append_image_reflectance() {
+        out_.features.reflectance_image = true;
+        record_.reflectance_image =
+            static_cast<std::uint32_t>(material_.substrate.reflectance_image);
+        record_.diagonal =
+            append_lanes([&](int lane, int phase) { return optics(phase, lane).diffuse_scale(); });
+        record_.image_reflectance = append_lanes(
+            [&](int lane, int phase) { return optics(phase, lane).internal_reflectance(); });
+        for (const Spectrum& primary : rgb_basis())
+            append_lanes([&](int lane, int phase) {
+                const double nm = plan_.wavelength_nm(lane, phase);
+                return material_.substrate.reflectance(nm) * primary(nm);
+            });
     }
 
     void append_factors() {

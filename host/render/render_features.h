@@ -14,6 +14,8 @@ struct RenderFeatures {
     bool fluorescence = false, dense_matrix = false, spectral_stack = false, dispersion = false;
     bool smooth = false, rough = false, deeper_lobes = false, weidlich_wilkie = false;
     bool area_lights = false, delta_lights = false, environment = false, lens = false;
+    bool tabulated_reflectance = false, scattering_slabs = false, oren_nayar = false, walk = false;
+    bool environment_image = false, textures = false, reflectance_image = false;
     bool scatter = false, band_variance = false;
     int chunks = 1, film_chunks = 1, lobes = 0;
 

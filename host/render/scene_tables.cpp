@@ -36,6 +36,7 @@ SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, M
             fmt::format("material '{}': model {}", material.name, model_name(chosen)));
         append_material(material, chosen, plan, tables.features.lobes, tables);
     }
+    append_surfaces(scene, tables);
     append_lights(scene, plan, tables);
     return tables;
 }

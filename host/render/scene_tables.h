@@ -16,10 +16,13 @@ struct SceneTables {
     std::vector<MaterialRecord> materials;
     std::vector<LayerRecord> layers;
     std::vector<LobeRecord> lobes;
+    std::vector<SurfaceRecord> surfaces;
+    std::vector<TextureRecord> textures;
     std::vector<LightRecord> lights;
     std::vector<float> tables;
     std::uint32_t sampled_lights = 0; ///< lights that light sampling can choose, first in `lights`
-    std::uint32_t environment = NO_INDEX; ///< the light that the environment's spectrum is kept in
+    std::uint32_t environment = NO_INDEX; ///< light that holds the constant environments' spectrum
+    EnvironmentRecord image{NO_INDEX, 0, 0, 0, 0, 0, 0, 0.0f}; ///< the environment image
     RenderFeatures features;
     std::vector<std::string> notes; ///< models chosen, factorisation errors
 };
@@ -29,6 +32,9 @@ void append_material(const Material& material, Model model, const WavelengthPlan
                      SceneTables& tables);
 /// Most deeper rough lobes that any material's stack can have.
 int deeper_lobe_count(const Scene& scene);
+
+/// Appends surfaces, textures and the images of these; sets the feature bits they need.
+void append_surfaces(const Scene& scene, SceneTables& tables);
 
 /// Appends all lights; sets the feature bits they need.
 void append_lights(const Scene& scene, const WavelengthPlan& plan, SceneTables& tables);

@@ -34,14 +34,18 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
       film_layout_(film_layout(plan, scene.features.band_variance, scene.features.scatter)),
       pixel_count_(scene.camera.width * scene.camera.height),
       capacity_(batch_capacity(settings, pixel_count_)),
-      rounds_(settings.max_depth +
-              (scene.features.area_lights || scene.features.environment ? 1u : 0u)),
+      rounds_(settings.max_depth + (scene.features.area_lights || scene.features.environment ||
+                                            scene.features.environment_image
+                                        ? 1u
+                                        : 0u)),
       samples_lights_(scene.sampled_lights > 0) {
     opencl_checked("setting up the renderer", [&] {
         build_kernels(build);
         materials_ = {device, std::span(scene.materials)};
         layers_ = {device, std::span(scene.layers)};
         lobes_ = {device, std::span(scene.lobes)};
+        surfaces_ = {device, std::span(scene.surfaces)};
+        textures_ = {device, std::span(scene.textures)};
         lights_ = {device, std::span(scene.lights)};
         tables_ = {device, std::span(scene.tables)};
         const std::size_t slots = static_cast<std::size_t>(capacity_) * rounds_;
@@ -49,8 +53,11 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         hits_ = {device, capacity_};
         paths_ = {device, capacity_};
         vertices_ = {device, slots};
-        shadow_rays_ = {device,
-                        scene.features.area_lights || scene.features.delta_lights ? slots : 0};
+        const bool sampling = scene.features.area_lights || scene.features.delta_lights ||
+                              scene.features.environment_image;
+        shadow_rays_ = {device, sampling ? slots : 0};
+        const bool colours = scene.features.environment_image || scene.features.reflectance_image;
+        colours_ = {device, colours ? slots * VERTEX_COLOURS : 0};
         lobe_weights_ = {device, slots * 2u * static_cast<std::size_t>(scene.features.lobes)};
         radiance_ = {device,
                      static_cast<std::size_t>(capacity_) * static_cast<std::size_t>(lanes_)};
@@ -125,10 +132,11 @@ bool Wavefront::intersect(const Batch& batch, std::uint32_t depth) {
 
 void Wavefront::shade(const Batch& batch, std::uint32_t depth) {
     shade_.bind(rays_.buffer(), hits_.buffer(), paths_.buffer(), vertices_.buffer(),
-                shadow_rays_.buffer(), lobe_weights_.buffer(), materials_.buffer(),
-                layers_.buffer(), lobes_.buffer(), lights_.buffer(), tables_.buffer(),
-                batch.paths(), capacity_, depth, settings_.max_depth, settings_.min_depth,
-                scene_.sampled_lights, scene_.environment, settings_.seed);
+                shadow_rays_.buffer(), lobe_weights_.buffer(), colours_.buffer(),
+                materials_.buffer(), layers_.buffer(), lobes_.buffer(), surfaces_.buffer(),
+                textures_.buffer(), lights_.buffer(), tables_.buffer(), scene_.image, batch.paths(),
+                capacity_, depth, settings_.max_depth, settings_.min_depth, scene_.sampled_lights,
+                scene_.environment, settings_.seed);
     shade_.launch(device_, batch.paths());
     wait_for_kernels(statistics_.shade_seconds);
 }
@@ -149,9 +157,9 @@ void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
 
 void Wavefront::gather(const Batch& batch) {
     gather_.bind(radiance_.buffer(), paths_.buffer(), vertices_.buffer(), shadow_rays_.buffer(),
-                 lobe_weights_.buffer(), materials_.buffer(), layers_.buffer(), lobes_.buffer(),
-                 lights_.buffer(), tables_.buffer(), batch.paths(), capacity_,
-                 static_cast<std::uint32_t>(phases_));
+                 lobe_weights_.buffer(), colours_.buffer(), materials_.buffer(), layers_.buffer(),
+                 lobes_.buffer(), lights_.buffer(), tables_.buffer(), scene_.image.light,
+                 batch.paths(), capacity_, static_cast<std::uint32_t>(phases_));
     gather_.launch(device_, batch.paths());
     wait_for_kernels(statistics_.gather_seconds);
 }
@@ -179,8 +187,9 @@ void Wavefront::with_film(const std::function<void(const FilmSums&)>& use) const
 }
 
 std::size_t Wavefront::device_bytes() const {
-    return materials_.bytes() + layers_.bytes() + lobes_.bytes() + lights_.bytes() +
-           tables_.bytes() + rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() + paths_.bytes() +
+    return materials_.bytes() + layers_.bytes() + lobes_.bytes() + surfaces_.bytes() +
+           textures_.bytes() + colours_.bytes() + lights_.bytes() + tables_.bytes() +
+           rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() + paths_.bytes() +
            vertices_.bytes() + lobe_weights_.bytes() + radiance_.bytes() + film_sums_.bytes() +
            film_statistics_.bytes() + film_bands_.bytes() + film_weights_.bytes() +
            y_weights_.bytes();

@@ -74,8 +74,10 @@ private:
     DeviceArray<MaterialRecord> materials_;
     DeviceArray<LayerRecord> layers_;
     DeviceArray<LobeRecord> lobes_;
+    DeviceArray<SurfaceRecord> surfaces_;
+    DeviceArray<TextureRecord> textures_;
     DeviceArray<LightRecord> lights_;
-    DeviceArray<float> tables_;
+    DeviceArray<float> tables_, colours_;
     DeviceArray<RayRecord> rays_, shadow_rays_;
     DeviceArray<HitRecord> hits_;
     DeviceArray<PathState> paths_;

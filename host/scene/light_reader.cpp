@@ -1,5 +1,7 @@
+#include "host/scene/image_io.h"
 #include "host/scene/scene_parts.h"
 #include "host/scene/spectrum_reader.h"
+#include "host/spectral/colour.h"
 
 #include <fmt/format.h>
 
@@ -36,12 +38,27 @@ Light read_directional_light(const TableReader& reader, LoadState& state) {
 }
 
 Light read_environment_light(const TableReader& reader, LoadState& state) {
-    for (const char* key : {"file", "image"})
-        if (reader.has(key))
-            reader.fail(key, "this version has no environment images",
-                        "give the same radiance for all directions: radiance = SPECTRUM");
-    return EnvironmentLight{
-        read_spectrum_key(reader, "radiance", SpectrumLimits::emission(), state)};
+    EnvironmentLight light;
+    if (!reader.has("file")) {
+        if (reader.has("rotation_deg"))
+            reader.fail("rotation_deg", "rotation_deg turns an image, and there is none",
+                        "add file = \"sky.exr\"");
+        light.radiance = read_spectrum_key(reader, "radiance", SpectrumLimits::emission(), state);
+        return light;
+    }
+    // The rgb basis reproduces a texel's colour under D65, so this is the image as it looks.
+    light.radiance = reader.has("radiance")
+                         ? read_spectrum_key(reader, "radiance", SpectrumLimits::emission(), state)
+                         : illuminant_with_luminance("D65", 1.0);
+    const SourcePosition at = reader.position_of_key("file");
+    light.image = load_image(reader.text("file"), at, ImageEncoding::Srgb, state);
+    const Image& image = state.images[static_cast<std::size_t>(light.image)];
+    for (const float value : image.rgb)
+        if (value < 0.0f)
+            throw_input_error({image.file.string()}, "the image holds negative radiance",
+                              "clip it at 0");
+    light.rotation_deg = reader.number_or("rotation_deg", 0.0, NumberRange::within(-1e6, 1e6));
+    return light;
 }
 
 } // namespace
@@ -62,7 +79,7 @@ Light read_light(const toml::table& table, const std::string& file, std::size_t 
     if (type == "directional")
         return read_directional_light(keys({"direction", "irradiance"}), state);
     if (type == "environment")
-        return read_environment_light(keys({"radiance", "file", "image"}), state);
+        return read_environment_light(keys({"radiance", "file", "rotation_deg"}), state);
     const TableReader reader = keys({"position", "intensity"});
     const Vector3 position = reader.vector("position");
     return PointLight{position,

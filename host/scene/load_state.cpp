@@ -78,7 +78,8 @@ fs::path LoadState::resolve(const std::string& name, const SourcePosition& at) c
 
 fs::path LoadState::resolve_and_digest(const std::string& name, const SourcePosition& at) {
     fs::path file = resolve(name, at);
-    add_to_digest(read_file(file, at));
+    if (digested_.insert(file.string()).second)
+        add_to_digest(read_file(file, at));
     return file;
 }
 
@@ -88,8 +89,17 @@ void LoadState::add_to_digest(const std::string& bytes) {
     digest_.update(bytes);
 }
 
+void LoadState::warn(const SourcePosition& at, const std::string& text) {
+    if (warned_.insert(at.text() + text).second)
+        spdlog::warn("{}: {}", at.text(), text);
+}
+
 void LoadState::track(const Spectrum& spectrum, const SourcePosition& at, const std::string& name) {
-    tracked_.push_back({spectrum.data_from_nm(), spectrum.data_to_nm(), at, name});
+    const auto same = [&](const Tracked& other) {
+        return other.name == name && other.position.text() == at.text();
+    };
+    if (std::none_of(tracked_.begin(), tracked_.end(), same))
+        tracked_.push_back({spectrum.data_from_nm(), spectrum.data_to_nm(), at, name});
 }
 
 void LoadState::warn_outside(double from_nm, double to_nm) const {

@@ -1,16 +1,20 @@
 #pragma once
 
 #include "host/error.h"
+#include "host/scene/scene.h"
 #include "host/scene/sha256.h"
 #include "host/spectral/spectrum.h"
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
 namespace reradiant {
+
+class TextureScope;
 
 /// Larger files are refused before memory is taken for them.
 inline constexpr std::uintmax_t MAX_TEXT_BYTES = std::uintmax_t{64} << 20;
@@ -30,16 +34,25 @@ public:
     /// for names without a path, in spectra/ and in the folders of spectra/. Input Error at `at`
     /// when there is none.
     std::filesystem::path resolve(const std::string& name, const SourcePosition& at) const;
-    /// The same, and reads its bytes into the digest.
+    /// The same, and reads its bytes into the digest, once however often it is named.
     std::filesystem::path resolve_and_digest(const std::string& name, const SourcePosition& at);
 
     void add_to_digest(const std::string& bytes);
     std::string digest() const { return digest_.hex(); }
 
+    /// Logs a warning; a material that is read once per texture level repeats itself only once.
+    void warn(const SourcePosition& at, const std::string& text);
+
     /// Remembers a spectrum so that use outside its data can be warned about.
     void track(const Spectrum& spectrum, const SourcePosition& at, const std::string& name);
     /// One warning for each tracked spectrum whose tables do not cover [from, to].
     void warn_outside(double from_nm, double to_nm) const;
+
+    std::vector<Texture> textures;     ///< Scene::textures
+    std::vector<Image> images;         ///< Scene::images
+    std::vector<bool> image_is_linear; ///< of each image: a PNG that was read as data
+    /// Textures that the values read now may refer to; null outside materials.
+    TextureScope* texture_scope = nullptr;
 
 private:
     struct Tracked {
@@ -48,6 +61,7 @@ private:
         std::string name;
     };
     std::vector<Tracked> tracked_;
+    std::set<std::string> digested_, warned_;
     Sha256 digest_;
 };
 

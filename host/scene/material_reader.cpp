@@ -1,10 +1,11 @@
 #include "host/scene/material_reader.h"
 
 #include "host/paths.h"
-#include "host/scene/spectrum_reader.h"
+#include "host/scene/stack_reader.h"
+#include "host/scene/textured_value.h"
+#include "kernels/shared.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,102 +16,109 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t MAX_LAYERS = 256;
-constexpr double MAX_IOR = 100.0;
+constexpr std::size_t MAX_LEVEL_TEXTURES = 3;
+constexpr std::size_t MAX_VARIANTS = 512;
 
-Distribution distribution_from_name(const std::string& name) {
-    return name == "blinn"      ? Distribution::Blinn
-           : name == "beckmann" ? Distribution::Beckmann
-                                : Distribution::Ggx;
+void refuse_adding_of_mirrors(const TableReader& reader, const Material& material) {
+    if (material.model != Model::Adding)
+        return;
+    constexpr const char* remedy = "use auto, walk or weidlich-wilkie";
+    if (material.substrate.type == SubstrateType::Conductor)
+        reader.fail("model", "the model \"adding\" needs a diffuse substrate, not a conductor",
+                    remedy);
+    if (material.stack.has_flakes())
+        reader.fail("model", "the model \"adding\" has no flakes", remedy);
 }
 
-/// Width of a layer's interface from `roughness_deg` or `alpha`, 0 when neither is given.
-double read_alpha(const TableReader& reader, Distribution distribution) {
-    if (reader.has("roughness_deg") && reader.has("alpha"))
-        reader.fail("alpha", "both roughness_deg and alpha are given", "give one of them");
-    if (reader.has("alpha"))
-        return reader.number("alpha", NumberRange::within(0.0, 1.0));
-    const double degrees = reader.number_or("roughness_deg", 0.0,
-                                            {.low = 0.0, .high = 90.0, .high_is_allowed = false});
-    const double alpha = alpha_from_roughness_deg(distribution, degrees);
-    if (!(alpha <= 1.0))
-        reader.fail("roughness_deg",
-                    fmt::format("roughness_deg = {} is a width alpha of {}", degrees, alpha),
-                    "alpha must be at most 1");
-    return alpha;
-}
-
-Layer read_layer(const toml::table& table, const std::string& file, std::size_t index,
-                 LoadState& state) {
-    const TableReader reader(table, file, fmt::format("[[material.layer]] {}", index),
-                             {"ior", "roughness_deg", "alpha", "distribution", "scattering",
-                              "thickness", "absorption", "scattering_coefficient", "anisotropy"});
-    for (const char* key : {"scattering_coefficient", "anisotropy"})
-        if (reader.has(key))
-            reader.fail(key, fmt::format("{}: slabs do not scatter in this version", key),
-                        "leave it out; absorption is available");
-    Layer layer;
-    layer.ior = read_spectrum_key(reader, "ior", SpectrumLimits::positive(MAX_IOR), state);
-    if (reader.has("distribution"))
-        layer.distribution =
-            distribution_from_name(reader.choice("distribution", {"blinn", "beckmann", "ggx"}));
-    layer.alpha = read_alpha(reader, layer.distribution);
-    if (reader.has("scattering"))
-        layer.scattering = reader.choice("scattering", {"multiple", "single"}) == "single"
-                               ? Scattering::Single
-                               : Scattering::Multiple;
-    layer.thickness = reader.number_or("thickness", 1.0, NumberRange::within(0.0, 1e18));
-    if (reader.has("absorption"))
-        layer.absorption =
-            read_spectrum_key(reader, "absorption", SpectrumLimits::emission(), state);
-    return layer;
-}
-
-Substrate read_substrate(const TableReader& material, LoadState& state) {
-    const std::string type =
-        type_of_table(material.plain_table("substrate"), material.file(), "[material.substrate]",
-                      {"lambert", "oren-nayar", "conductor"});
-    if (type != "lambert")
-        throw_input_error(
-            position_of(material.file(),
-                        material.plain_table("substrate").find("type")->first.source()),
-            fmt::format("this version has no substrate of type \"{}\"", type),
-            "use type = \"lambert\"");
-    const TableReader reader = material.table("substrate", {"type", "reflectance", "reradiation"});
-    if (reader.has("reflectance") && reader.has("reradiation"))
-        reader.fail("reflectance", "both reflectance and reradiation are given",
-                    "a matrix holds its reflectance on the diagonal, fluorophores take it as "
-                    "reradiation.reflectance");
-    Substrate substrate;
-    if (reader.has("reradiation"))
-        read_reradiation_key(reader, "reradiation", substrate, state);
-    else if (reader.has("reflectance"))
-        substrate.reflectance =
-            read_spectrum_key(reader, "reflectance", SpectrumLimits::fraction(), state);
-    else
-        substrate.reflectance = Spectrum::constant(0.5);
-    return substrate;
-}
-
-Material read_preset(const toml::table& table, const std::string& file, MaterialPlace place,
-                     LoadState& state) {
-    const TableReader reader(table, file, "a material with a preset", {"name", "preset"});
-    if (place == MaterialPlace::PresetFile)
-        reader.fail("preset", "a preset refers to another preset", "write the material out");
-    const std::string preset = reader.text("preset");
-    const auto known = preset_names();
-    if (std::find(known.begin(), known.end(), preset) == known.end())
-        reader.fail("preset", fmt::format("no preset is called \"{}\"", preset),
-                    fmt::format("there are: {}", fmt::join(known, ", ")));
-    const fs::path path = spectra_directory() / "materials" / (preset + ".toml");
-    const std::string text = read_file(path, reader.position_of_key("preset"));
-    state.add_to_digest(text);
-    const toml::table root = parse_toml(path.string(), text);
-    const TableReader preset_file(root, path.string(), "a material file", {"material"});
-    Material material = read_material(preset_file.plain_table("material"), path.string(),
-                                      MaterialPlace::PresetFile, state);
-    material.name = reader.text_or("name", preset);
+/// The material at the levels that the textures stand at.
+Material read_at_levels(const TableReader& reader, LoadState& state) {
+    Material material;
+    material.name = reader.text_or("name", fs::path(reader.file()).stem().string());
+    if (reader.has("model"))
+        material.model =
+            model_from_name(reader.choice("model", {"auto", "adding", "weidlich-wilkie", "walk"}));
+    const auto layers = reader.tables("layer");
+    if (layers.size() > MAX_LAYERS)
+        reader.fail("layer", fmt::format("the material has {} layers", layers.size()),
+                    fmt::format("give at most {}", MAX_LAYERS));
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        material.stack.layers.push_back(read_layer(*layers[i], reader.file(), i, state));
+    material.substrate = read_substrate(reader, state);
+    refuse_adding_of_mirrors(reader, material);
     return material;
+}
+
+std::vector<std::size_t> level_counts(const TableReader& reader, const MaterialReading& reading,
+                                      const LoadState& state) {
+    if (reading.textures.size() > MAX_LEVEL_TEXTURES)
+        throw_input_error(
+            reader.position(),
+            fmt::format("the material's values follow {} textures", reading.textures.size()),
+            fmt::format("at most {}; normal and mix do not count", MAX_LEVEL_TEXTURES));
+    std::vector<std::size_t> counts;
+    std::size_t variants = 1;
+    for (const int texture : reading.textures) {
+        const int levels = state.textures[static_cast<std::size_t>(texture)].levels;
+        counts.push_back(static_cast<std::size_t>(levels));
+        variants *= counts.back();
+    }
+    if (variants > MAX_VARIANTS)
+        throw_input_error(
+            reader.position(),
+            fmt::format("the levels of the material's textures have {} combinations", variants),
+            fmt::format("at most {}: give the textures fewer levels", MAX_VARIANTS));
+    return counts;
+}
+
+void read_variants(const TableReader& reader, MaterialReading& reading, LoadState& state) {
+    TextureScope& scope = *state.texture_scope;
+    scope.forget_used();
+    scope.set_levels({});
+    reading.middle = read_at_levels(reader, state);
+    reading.textures = scope.used();
+    if (reading.textures.empty())
+        return;
+    const std::vector<std::size_t> counts = level_counts(reader, reading, state);
+    std::vector<std::size_t> digits(counts.size(), 0);
+    for (bool more = true; more;) {
+        std::vector<double> levels;
+        for (std::size_t k = 0; k < digits.size(); ++k)
+            levels.push_back(static_cast<double>(digits[k]) / static_cast<double>(counts[k] - 1));
+        scope.set_levels(std::move(levels));
+        reading.variants.push_back(read_at_levels(reader, state));
+        more = false;
+        for (std::size_t k = digits.size(); k-- > 0 && !more;) {
+            digits[k] = (digits[k] + 1) % counts[k];
+            more = digits[k] != 0;
+        }
+    }
+}
+
+void read_normal(const TableReader& reader, MaterialReading& reading, LoadState& state) {
+    reading.normal_texture = read_texture_index(reader, "normal", state);
+    const Texture& texture = state.textures[static_cast<std::size_t>(reading.normal_texture)];
+    const bool tilts =
+        (texture.type == TextureType::Noise || texture.type == TextureType::Voronoi) &&
+        texture.tilt_deg > 0.0;
+    if (!tilts && !texture.is_normal_map)
+        reader.fail("normal", fmt::format("the texture \"{}\" has no normals", texture.name),
+                    "use noise or voronoi with tilt_deg above 0, or an image with normal_map = "
+                    "true");
+}
+
+void read_mix(const TableReader& reader, MaterialReading& reading, LoadState& state) {
+    const TableReader mix = reader.table("mix", {"with", "weight"});
+    reading.mixed_with = mix.text("with");
+    reading.mixed_with_position = mix.position_of_key("with");
+    if (!is_texture_reference(mix.required("weight"))) {
+        reading.mix_weight = mix.number("weight", NumberRange::within(0.0, 1.0));
+        return;
+    }
+    reading.mix_texture = read_texture_index(mix, "weight", state);
+    const Texture& texture = state.textures[static_cast<std::size_t>(reading.mix_texture)];
+    if (texture.is_normal_map)
+        mix.fail("weight", fmt::format("the texture \"{}\" is a normal map", texture.name),
+                 "use it as normal = { texture = ... }");
 }
 
 } // namespace
@@ -126,31 +134,49 @@ std::vector<std::string> preset_names() {
     return names;
 }
 
-Material read_material(const toml::table& table, const std::string& file, MaterialPlace place,
-                       LoadState& state) {
+MaterialReading read_preset(const std::string& preset, const SourcePosition& at, LoadState& state) {
+    const auto known = preset_names();
+    if (std::find(known.begin(), known.end(), preset) == known.end())
+        throw_input_error(at, fmt::format("no preset is called \"{}\"", preset),
+                          fmt::format("there are: {}", fmt::join(known, ", ")));
+    const fs::path path = spectra_directory() / "materials" / (preset + ".toml");
+    state.resolve_and_digest(path.string(), at);
+    const toml::table root = parse_toml(path.string(), read_file(path, at));
+    const TableReader preset_file(root, path.string(), "a material file", {"material", "texture"});
+    TextureScope own_textures(preset_file, state);
+    TextureScope* const outer = std::exchange(state.texture_scope, &own_textures);
+    MaterialReading reading = read_material(preset_file.plain_table("material"), path.string(),
+                                            MaterialPlace::PresetFile, state);
+    state.texture_scope = outer;
+    return reading;
+}
+
+MaterialReading read_material(const toml::table& table, const std::string& file,
+                              MaterialPlace place, LoadState& state) {
     const std::string name = place == MaterialPlace::Scene ? "[[material]]" : "[material]";
-    const std::vector<std::string> keys{"name", "model", "layer", "substrate", "preset"};
-    const TableReader reader(table, file, name, keys);
+    const TableReader reader(table, file, name,
+                             {"name", "model", "layer", "substrate", "preset", "normal", "mix"});
     if (place == MaterialPlace::Scene && reader.text("name").empty())
         reader.fail("name", "the name is empty", "give a name for shapes to refer to");
-    if (reader.has("preset"))
-        return read_preset(table, file, place, state);
-    Material material;
-    material.name = reader.text_or("name", fs::path(file).stem().string());
-    if (reader.has("model"))
-        material.model =
-            model_from_name(reader.choice("model", {"auto", "adding", "weidlich-wilkie", "walk"}));
-    if (material.model == Model::Walk)
-        reader.fail("model", "this version has no model \"walk\"",
-                    "use auto, adding or weidlich-wilkie");
-    const auto layers = reader.tables("layer");
-    if (layers.size() > MAX_LAYERS)
-        reader.fail("layer", fmt::format("the material has {} layers", layers.size()),
-                    fmt::format("give at most {}", MAX_LAYERS));
-    for (std::size_t i = 0; i < layers.size(); ++i)
-        material.stack.layers.push_back(read_layer(*layers[i], file, i, state));
-    material.substrate = read_substrate(reader, state);
-    return material;
+    MaterialReading reading;
+    if (reader.has("preset")) {
+        const TableReader named(table, file, "a material with a preset", {"name", "preset"});
+        if (place == MaterialPlace::PresetFile)
+            named.fail("preset", "a preset refers to another preset", "write the material out");
+        const std::string preset = named.text("preset");
+        reading = read_preset(preset, named.position_of_key("preset"), state);
+        const std::string own_name = named.text_or("name", preset);
+        reading.middle.name = own_name;
+        for (Material& variant : reading.variants)
+            variant.name = own_name;
+        return reading;
+    }
+    read_variants(reader, reading, state);
+    if (reader.has("normal"))
+        read_normal(reader, reading, state);
+    if (reader.has("mix"))
+        read_mix(reader, reading, state);
+    return reading;
 }
 
 std::array<double, 2> default_range_nm(bool fluorescent) {

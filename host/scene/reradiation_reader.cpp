@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 namespace reradiant {
 
@@ -14,23 +13,23 @@ namespace {
 constexpr std::size_t MAX_FLUOROPHORES = 64;
 
 /// Refuses what breaks energy; logs what was repaired and what breaks the photon balance.
-void check_and_repair(ReradiationMatrix& matrix, const SourcePosition& at) {
+void check_and_repair(ReradiationMatrix& matrix, const SourcePosition& at, LoadState& state) {
     std::vector<std::string> warnings;
     try {
         const MatrixRepair repair = repair_for_rendering(matrix, warnings);
         if (const std::string text = repair.text(); !text.empty())
-            spdlog::warn("{}: {}", at.text(), text);
+            state.warn(at, text);
     } catch (const std::invalid_argument& error) {
         throw_input_error(at, error.what());
     }
     for (const auto& warning : warnings)
-        spdlog::warn("{}: {}", at.text(), warning);
+        state.warn(at, warning);
 }
 
 void read_matrix(const TableReader& reader, Substrate& substrate, LoadState& state) {
     const SourcePosition at = reader.position_of_key("file");
     ReradiationMatrix matrix = read_reradiation(state.resolve_and_digest(reader.text("file"), at));
-    check_and_repair(matrix, at);
+    check_and_repair(matrix, at, state);
     substrate.reflectance = matrix.reflectance();
     substrate.matrix = std::move(matrix);
 }
@@ -73,7 +72,7 @@ void read_reradiation_key(const TableReader& table, const std::string& key, Subs
     const WavelengthGrid grid = grid_from_range(300.0, 780.0, 10.0);
     ReradiationMatrix matrix =
         matrix_from_fluorophores(substrate.fluorophores, substrate.reflectance, grid, grid);
-    check_and_repair(matrix, table.position_of_key(key));
+    check_and_repair(matrix, table.position_of_key(key), state);
 }
 
 } // namespace reradiant

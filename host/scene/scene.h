@@ -189,10 +189,14 @@ struct Scene {
 /// Error at their place. Warnings go to the log.
 Scene load_scene(const std::filesystem::path& file);
 
+/// Surfaces of a scene that was put together in code: surface i is material i.
+std::vector<Surface> plain_surfaces(const Scene& scene);
+
 /// Names that `preset = "..."` takes, sorted: the files of spectra/materials.
 std::vector<std::string> preset_names();
 
-/// Reads a MATERIAL.toml with one [material].
+/// Reads a MATERIAL.toml with one [material]. One material stands at one point: textures are taken
+/// at t = 1/2 and a mixture is left out, which the log says.
 Material load_material(const std::filesystem::path& file);
 
 } // namespace reradiant

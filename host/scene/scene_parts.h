@@ -11,7 +11,7 @@ namespace reradiant {
 Light read_light(const toml::table& table, const std::string& file, std::size_t index,
                  LoadState& state);
 
-/// A [[shape]] table. `materials` maps names to indices into Scene::materials.
+/// A [[shape]] table. `materials` maps names to indices into Scene::surfaces.
 Shape read_shape(const toml::table& table, const std::string& file, std::size_t index,
                  const std::map<std::string, int>& materials, LoadState& state);
 

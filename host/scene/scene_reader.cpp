@@ -1,5 +1,7 @@
 #include "host/scene/material_reader.h"
 #include "host/scene/scene_parts.h"
+#include "host/scene/surface_builder.h"
+#include "host/scene/textured_value.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +9,7 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 namespace reradiant {
 
@@ -68,14 +71,20 @@ IntegratorSettings read_integrator(const TableReader& reader) {
 
 std::map<std::string, int> read_materials(const TableReader& root, Scene& scene, LoadState& state) {
     std::map<std::string, int> indices;
+    TextureScope textures(root, state);
+    state.texture_scope = &textures;
+    SurfaceBuilder builder;
     for (const toml::table* table : root.tables("material")) {
-        Material material = read_material(*table, root.file(), MaterialPlace::Scene, state);
-        if (!indices.emplace(material.name, static_cast<int>(scene.materials.size())).second)
+        MaterialReading reading = read_material(*table, root.file(), MaterialPlace::Scene, state);
+        if (!indices.emplace(reading.middle.name, static_cast<int>(indices.size())).second)
             throw_input_error(position_of(root.file(), table->find("name")->first.source()),
-                              fmt::format("two materials are called \"{}\"", material.name),
+                              fmt::format("two materials are called \"{}\"", reading.middle.name),
                               "give each its own name");
-        scene.materials.push_back(std::move(material));
+        builder.add(std::move(reading));
     }
+    builder.finish(indices, scene, state);
+    state.texture_scope = nullptr;
+    scene.textures = std::move(state.textures);
     return indices;
 }
 
@@ -99,8 +108,6 @@ Scene load_scene(const std::filesystem::path& file) {
     const TableReader root(
         table, file.string(), "a scene",
         {"film", "camera", "integrator", "light", "shape", "material", "texture"});
-    if (root.has("texture"))
-        root.fail("texture", "this version has no textures", "give numbers or spectra");
     Scene scene;
     scene.file = file;
     scene.film = read_film(root.table("film", {"width", "height", "bands_nm"}));
@@ -115,6 +122,7 @@ Scene load_scene(const std::filesystem::path& file) {
     const auto shapes = root.tables("shape");
     for (std::size_t i = 0; i < shapes.size(); ++i)
         scene.shapes.push_back(read_shape(*shapes[i], root.file(), i, materials, state));
+    scene.images = std::move(state.images);
     warn_outside_bands(scene, state);
     scene.hash = state.digest();
     return scene;
@@ -124,13 +132,21 @@ Material load_material(const std::filesystem::path& file) {
     LoadState state;
     const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
     const toml::table table = parse_toml(file.string(), text);
-    const TableReader root(table, file.string(), "a material file", {"material"});
+    const TableReader root(table, file.string(), "a material file", {"material", "texture"});
     const toml::node& node = root.required("material");
     if (node.is_array())
         root.fail("material", "material is an array of tables",
                   "a material file holds one [material]; [[material]] stands in scenes");
-    Material material = read_material(root.plain_table("material"), root.file(),
-                                      MaterialPlace::MaterialFile, state);
+    TextureScope textures(root, state);
+    state.texture_scope = &textures;
+    MaterialReading reading = read_material(root.plain_table("material"), root.file(),
+                                            MaterialPlace::MaterialFile, state);
+    if (!reading.textures.empty())
+        spdlog::info("{}: textured values are taken at the middle of their textures",
+                     file.string());
+    if (!reading.mixed_with.empty())
+        spdlog::info("{}: the mixture with \"{}\" is left out", file.string(), reading.mixed_with);
+    Material material = std::move(reading.middle);
     const auto range = default_range_nm(material.substrate.is_fluorescent());
     state.warn_outside(range[0], range[1]);
     return material;

@@ -1,5 +1,6 @@
 #include "host/scene/spectrum_reader.h"
 
+#include "host/scene/textured_value.h"
 #include "host/spectral/colour.h"
 #include "host/spectral/matrix_io.h"
 
@@ -35,10 +36,6 @@ std::vector<std::string> keys_of_form(const std::string& form) {
 /// The form a table is in: the one key of FORMS that it holds.
 std::string form_of(const toml::table& table, const std::string& file, const std::string& name) {
     const SourcePosition at = position_of(file, table.source());
-    if (table.contains("texture"))
-        throw_input_error(at,
-                          fmt::format("{} is a texture, which this version does not have", name),
-                          "give a number or a spectrum");
     std::vector<std::string> found;
     for (const auto& form : FORMS)
         if (table.contains(form))
@@ -126,9 +123,31 @@ Spectrum read_form(const TableReader& reader, const std::string& form, LoadState
 }
 
 Spectrum read_node(const toml::node& node, const std::string& file, const SourcePosition& at,
+                   const std::string& name, LoadState& state);
+
+/// low + t (high - low) at the level that the texture stands at.
+Spectrum read_textured(const toml::node& node, const std::string& file, const std::string& name,
+                       LoadState& state) {
+    const TextureReference reference = read_texture_reference(node, file, name, state);
+    const auto end = [&](const TextureReference::End& at, const char* key, double otherwise) {
+        if (at.node == nullptr)
+            return Spectrum::constant(otherwise);
+        return read_node(*at.node, at.file, position_of(at.file, at.node->source()), key, state);
+    };
+    state.texture_scope->inside_reference = true;
+    const Spectrum low = end(reference.low, "low", 0.0), high = end(reference.high, "high", 1.0);
+    state.texture_scope->inside_reference = false;
+    if (reference.t == 0.0 || reference.t == 1.0)
+        return reference.t == 0.0 ? low : high;
+    return low.scaled(1.0 - reference.t) += high.scaled(reference.t);
+}
+
+Spectrum read_node(const toml::node& node, const std::string& file, const SourcePosition& at,
                    const std::string& name, LoadState& state) {
     if (node.is_number())
         return Spectrum::constant(number_at(node, at, name, ANY_VALUE));
+    if (is_texture_reference(node))
+        return read_textured(node, file, name, state);
     if (const toml::table* table = node.as_table()) {
         const std::string form = form_of(*table, file, name);
         const TableReader reader(*table, file, fmt::format("the spectrum {}", name),
@@ -172,9 +191,15 @@ void check_limits(const Spectrum& spectrum, const SourcePosition& at, const std:
 
 Spectrum read_spectrum_key(const TableReader& table, const std::string& key,
                            const SpectrumLimits& limits, LoadState& state) {
-    const SourcePosition at = table.position_of_key(key);
-    const Spectrum spectrum = read_node(table.required(key), table.file(), at, key, state);
-    check_limits(spectrum, at, key, limits);
+    return read_spectrum_node(table.required(key), table.file(), table.position_of_key(key), key,
+                              limits, state);
+}
+
+Spectrum read_spectrum_node(const toml::node& node, const std::string& file,
+                            const SourcePosition& at, const std::string& name,
+                            const SpectrumLimits& limits, LoadState& state) {
+    const Spectrum spectrum = read_node(node, file, at, name, state);
+    check_limits(spectrum, at, name, limits);
     return spectrum;
 }
 

@@ -23,5 +23,9 @@ struct SpectrumLimits {
 /// element, or in the spectrum's own file.
 Spectrum read_spectrum_key(const TableReader& table, const std::string& key,
                            const SpectrumLimits& limits, LoadState& state);
+/// The same for a node of its own; `name` is for messages.
+Spectrum read_spectrum_node(const toml::node& node, const std::string& file,
+                            const SourcePosition& at, const std::string& name,
+                            const SpectrumLimits& limits, LoadState& state);
 
 } // namespace reradiant

@@ -10,9 +10,9 @@ using namespace test;
 using kernels::vec3;
 using kernels::Vec3;
 
-const std::vector<LayerRecord> layers = {{1.5f, 0.2f, MICROFACET_GGX, NO_INDEX},
-                                         {1.2f, 0.0f, MICROFACET_GGX, NO_INDEX},
-                                         {0.9f, 0.3f, MICROFACET_BLINN, NO_INDEX}};
+const std::vector<LayerRecord> layers = {{1.5f, 0.2f, MICROFACET_GGX, NO_INDEX, 0.0f, NO_INDEX},
+                                         {1.2f, 0.0f, MICROFACET_GGX, NO_INDEX, 0.0f, NO_INDEX},
+                                         {0.9f, 0.3f, MICROFACET_BLINN, NO_INDEX, 0.0f, NO_INDEX}};
 
 TEST(KernelLayerStack, ModelAMatchesDouble) {
     Source source(13);
@@ -43,7 +43,7 @@ kernels::LayerStackView view(const std::vector<LobeRecord>& lobes) {
 
 TEST(KernelLayerStack, SamplesFollowTheirPdf) {
     // Chi-square of directions in 8 x 16 cells of (z, phi) against the integrated pdf.
-    const std::vector<LobeRecord> lobes(LOBES, {0.4f, MICROFACET_BECKMANN, 1u, 0u});
+    const std::vector<LobeRecord> lobes(LOBES, {0.4f, MICROFACET_BECKMANN, 1u, NO_INDEX});
     const kernels::LayerStackView stack = view(lobes);
     kernels::LayerChoice choice{};
     for (int i = 0; i < CHOICES; ++i)

@@ -51,7 +51,8 @@ public:
     enum class End { Air, Substrate, Absorbed, Lost };
     struct Result {
         End end;
-        double cosine; ///< where it left, if it did
+        double cosine;    ///< where it left, if it did
+        Vector direction; ///< of travel, there
     };
 
     /// One photon: from the air with cosine c, or emitted by the (black) substrate.
@@ -60,21 +61,54 @@ public:
     }
     Result from_substrate(const StackValues& stack) {
         const double c = std::sqrt(uniform());
-        const Vector up{std::sqrt(1.0 - c * c), 0.0, c};
+        return from_below(stack, {std::sqrt(1.0 - c * c), 0.0, c});
+    }
+    /// One that leaves the substrate in direction w of the lowest slab.
+    Result from_below(const StackValues& stack, Vector w) {
         const int last = static_cast<int>(stack.size());
-        if (!survives(stack, last, c)) {
-            return {End::Absorbed, 0.0};
+        if (!traverse(stack, last, w)) {
+            return {End::Absorbed, 0.0, w};
         }
-        return travel(stack, last, up);
+        return travel(stack, last, w);
     }
 
 private:
     static double ior(const StackValues& stack, int medium) {
         return medium == 0 ? 1.0 : stack[static_cast<std::size_t>(medium) - 1].ior;
     }
-    bool survives(const StackValues& stack, int medium, double c) {
-        const double tau = medium == 0 ? 0.0 : stack[static_cast<std::size_t>(medium) - 1].tau;
-        return tau == 0.0 || uniform() < std::exp(-tau / std::fabs(c));
+    /// From the end of the slab that w points away from to one of its ends, which w then points at;
+    /// false when absorbed on the way.
+    bool traverse(const StackValues& stack, int medium, Vector& w) {
+        if (medium == 0) {
+            return true;
+        }
+        const LayerValues& layer = stack[static_cast<std::size_t>(medium) - 1];
+        const double depth = layer.tau + layer.tau_scattering;
+        double z = w.z < 0.0 ? depth : 0.0;
+        while (true) {
+            z -= std::log(1.0 - uniform()) * w.z;
+            if (z <= 0.0 || z >= depth) {
+                return true;
+            }
+            if (uniform() * depth < layer.tau) {
+                return false;
+            }
+            w = deflect(w, henyey_greenstein(layer.anisotropy));
+        }
+    }
+    double henyey_greenstein(double g) {
+        if (g == 0.0) {
+            return 2.0 * uniform() - 1.0;
+        }
+        const double s = (1.0 - g * g) / (1.0 - g + 2.0 * g * uniform());
+        return (1.0 + g * g - s * s) / (2.0 * g);
+    }
+    Vector deflect(const Vector& w, double mu) {
+        const Vector side = std::fabs(w.z) < 0.9 ? unit({w.y, -w.x, 0.0}) : unit({0.0, w.z, -w.y});
+        const Vector other{w.y * side.z - w.z * side.y, w.z * side.x - w.x * side.z,
+                           w.x * side.y - w.y * side.x};
+        const double phi = 2.0 * M_PI * uniform(), s = std::sqrt(std::fmax(1.0 - mu * mu, 0.0));
+        return unit(mu * w + (s * std::cos(phi)) * side + (s * std::sin(phi)) * other);
     }
 
     /// `medium` counts from the air; w is the direction of travel; the photon stands at the far
@@ -83,21 +117,21 @@ private:
         const int substrate = static_cast<int>(stack.size());
         while (true) {
             if (w.z > 0.0 && medium == 0) {
-                return {End::Air, w.z};
+                return {End::Air, w.z, w};
             }
             if (w.z < 0.0 && medium == substrate) {
-                return {End::Substrate, -w.z};
+                return {End::Substrate, -w.z, w};
             }
             const int next = w.z < 0.0 ? medium + 1 : medium - 1;
             const LayerValues& layer = stack[static_cast<std::size_t>(std::max(medium, next)) - 1];
             bool lost = false;
             const bool passed = cross(layer, ior(stack, medium), ior(stack, next), w, lost);
             if (lost) {
-                return {End::Lost, 0.0};
+                return {End::Lost, 0.0, w};
             }
             medium = passed ? next : medium;
-            if (!survives(stack, medium, w.z)) {
-                return {End::Absorbed, 0.0};
+            if (!traverse(stack, medium, w)) {
+                return {End::Absorbed, 0.0, w};
             }
         }
     }

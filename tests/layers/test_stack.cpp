@@ -35,17 +35,17 @@ TEST(Stack, KnowsWhatDependsOnWavelength) {
     LayerStack stack;
     EXPECT_TRUE(stack.is_smooth());
     EXPECT_TRUE(stack.is_grey());
-    stack.layers.push_back({Spectrum::constant(1.5), Distribution::Ggx, 0.0, Scattering::Multiple,
-                            2.0, Spectrum::constant(0.25)});
+    Layer grey;
+    grey.thickness = 2.0;
+    grey.absorption = Spectrum::constant(0.25);
+    stack.layers.push_back(grey);
     EXPECT_TRUE(stack.is_grey());
     EXPECT_TRUE(stack.absorbs());
     EXPECT_EQ(stack_at(stack, 500.0).front().tau, 0.5);
-    stack.layers.push_back({Spectrum::table({400, 700}, {1.5, 1.4}),
-                            Distribution::Ggx,
-                            0.1,
-                            Scattering::Multiple,
-                            1.0,
-                            {}});
+    Layer dispersive;
+    dispersive.ior = Spectrum::table({400, 700}, {1.5, 1.4});
+    dispersive.alpha = 0.1;
+    stack.layers.push_back(dispersive);
     EXPECT_TRUE(stack.is_dispersive());
     EXPECT_FALSE(stack.is_grey());
     EXPECT_FALSE(stack.is_smooth());

@@ -87,8 +87,10 @@ struct SmoothSlabs {
 LayerStack stack_of(const SmoothSlabs& slabs) {
     LayerStack stack;
     for (std::size_t k = 1; k < slabs.ior.size(); ++k) {
-        stack.layers.push_back({Spectrum::constant(slabs.ior[k]), Distribution::Ggx, 0.0,
-                                Scattering::Multiple, 1.0, Spectrum::constant(slabs.tau[k])});
+        Layer layer;
+        layer.ior = Spectrum::constant(slabs.ior[k]);
+        layer.absorption = Spectrum::constant(slabs.tau[k]);
+        stack.layers.push_back(layer);
     }
     return stack;
 }

@@ -110,15 +110,6 @@ const BadScene BAD_SCENES[] = {
     {"FolderForFile", "radiance = 1", "radiance = { file = \".\" }", 9, 14, "cannot open"},
     // What this version does not have.
     {"Heightfield", "type = \"sphere\"", "type = \"heightfield\"", 16, 1, "no heightfields"},
-    {"OrenNayar", "type = \"lambert\"", "type = \"oren-nayar\"", 13, 1, "this version has no"},
-    {"Conductor", "type = \"lambert\"", "type = \"conductor\"", 13, 1, "this version has no"},
-    {"Walk", "name = \"grey\"", "name = \"grey\"\nmodel = \"walk\"", 12, 1, "no model \"walk\""},
-    {"TextureTable", "[[shape]]", "[[texture]]\nname = \"x\"\n[[shape]]", 15, 3, "no textures"},
-    {"TextureValue", "reflectance = 0.5", "reflectance = { texture = \"x\" }", 14, 15, "texture"},
-    {"EnvironmentImage", "radiance = 1", "image = \"sky.exr\"", 9, 1, "no environment images"},
-    {"ScatteringSlab", "[material.substrate]",
-     "[[material.layer]]\nior = 1.5\nscattering_coefficient = 1\n[material.substrate]", 14, 1,
-     "do not scatter"},
     // Presets.
     {"UnknownPreset", "[material.substrate]\ntype = \"lambert\"\nreflectance = 0.5",
      "preset = \"none\"", 12, 1, "there are: fluorescent-orange-bare"},

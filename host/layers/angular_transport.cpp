@@ -1,7 +1,9 @@
-#include "host/layers/rough_transport.h"
+#include "host/layers/angular_transport.h"
 
+#include "host/layers/angular_system.h"
+#include "host/layers/interface_walk.h"
+#include "host/layers/oren_nayar_substrate.h"
 #include "host/layers/quadrature.h"
-#include "host/layers/rough_system.h"
 #include "host/layers/specular_lobes.h"
 
 #include <algorithm>
@@ -13,7 +15,7 @@ namespace reradiant {
 
 namespace {
 
-/// Fits are the same for all stacks with the same upper side of the first rough interface.
+/// Fits are the same for all stacks with the same upper side of the first scatterer.
 std::shared_ptr<const CellFit> fit_of(const AngularGrid& grid) {
     static std::mutex mutex;
     static std::map<double, std::shared_ptr<const CellFit>> known;
@@ -25,13 +27,27 @@ std::shared_ptr<const CellFit> fit_of(const AngularGrid& grid) {
     return fit;
 }
 
-class RoughTransport final : public AddingTransport {
+/// Scattering counted as absorption: what is left was not scattered.
+StackValues without_scattered(StackValues stack) {
+    for (LayerValues& layer : stack) {
+        layer.tau += layer.tau_scattering;
+        layer.tau_scattering = 0.0;
+    }
+    return stack;
+}
+
+class AngularTransport final : public AddingTransport {
 public:
-    explicit RoughTransport(const StackValues& stack)
-        : stack_(stack), system_(stack, stack.size()), fit_(fit_of(system_.top_grid())) {
+    explicit AngularTransport(const StackValues& stack)
+        : stack_(stack), unscattered_(without_scattered(stack)), system_(stack, stack.size()),
+          fit_(fit_of(system_.top_grid())) {
         top_ = system_.top();
         top_rough_ = top_.ior.size() == 1;
-        const RoughResponse response = system_.solve();
+        while (first_rough_ < stack.size() && !is_rough_interface(stack, first_rough_)) {
+            ++first_rough_;
+        }
+        lobe_top_ = smooth_media(unscattered_, 0, first_rough_);
+        const AngularResponse response = system_.solve();
         substrate_ = fit_->coefficients(response.to_substrate);
         air_ = fit_->coefficients(response.to_air);
         lost_ = fit_->coefficients(response.lost);
@@ -44,10 +60,15 @@ public:
 
     double transmission(double c) const override { return shares(c).transmission; }
     double internal_reflectance() const override { return internal_reflectance_; }
+    double internal_reflectance(double sigma) const override {
+        return oren_nayar_feedback(sigma, internal_reflectance_, [&](const SubstrateWeight& w) {
+            return system_.solve(w).internal_reflectance;
+        });
+    }
     double lowest_ior() const override { return stack_.back().ior; }
     double specular_albedo(double c) const override { return shares(c).specular; }
     double specular_delta(double c) const override {
-        return smooth_response(top_, 1.0, std::clamp(c, 0.0, 1.0)).reflection_down;
+        return smooth_response(lobe_top_, 1.0, std::clamp(c, 0.0, 1.0)).reflection_down;
     }
     bool has_top_lobe() const override { return top_rough_; }
     const std::vector<Lobe>& deeper_lobes() const override { return lobes_; }
@@ -70,14 +91,14 @@ private:
     };
 
     /// Through the smooth interfaces at the top exactly, then by the fitted functions of the
-    /// cosine above the first rough interface.
+    /// cosine above the first scatterer.
     Shares shares(double cosine) const {
         const double c = std::clamp(cosine, 0.0, 1.0);
         const SmoothResponse in = smooth_response(top_, 1.0, c);
         if (in.transmission <= 0.0) {
             return {0.0, in.reflection_down, 0.0};
         }
-        const double inside = inner_cosine(c);
+        const double inside = inner_cosine(top_, c);
         const double raw = std::clamp(fit_->evaluate(substrate_, inside), 0.0, 1.0);
         const double to_substrate = reciprocity_ * raw;
         // the correction moves light between the two, so that nothing is created
@@ -87,8 +108,8 @@ private:
                 in.transmission * lost};
     }
 
-    double inner_cosine(double c) const {
-        const double n = top_.ior.back();
+    static double inner_cosine(const SmoothStack& media, double c) {
+        const double n = media.ior.back();
         const double g2 = (n - 1.0) * (n + 1.0) + c * c;
         return g2 > 0.0 ? std::min(std::sqrt(g2) / n, 1.0) : 0.0;
     }
@@ -119,15 +140,21 @@ private:
         return top_rough_ ? std::max(fit_->evaluate(top_lobe_, c), 0.0) : 0.0;
     }
 
-    /// Specular albedo of the stack cut off (black) under its first `count` layers.
-    Eigen::VectorXd cut_albedo(std::size_t count) const {
-        return fit_->coefficients(RoughSystem(stack_, count).solve().to_air);
-    }
-
     /// First reflection lobe at the top, then one lobe for each deeper rough interface and for
-    /// each run of smooth interfaces beneath a rough one.
+    /// each run of smooth interfaces beneath a rough one. They hold light that no slab scattered.
     void make_lobes() {
-        std::size_t k = top_.ior.size() - 1;
+        if (first_rough_ == stack_.size()) {
+            return;
+        }
+        const auto cut_system = [&](std::size_t count) { // black beneath `count` layers
+            return AngularSystem(unscattered_, count);
+        };
+        std::size_t k = first_rough_;
+        lobe_fit_ = fit_of(cut_system(k + 1).top_grid());
+        const auto cut_albedo = [&](std::size_t count) {
+            const bool whole = count == stack_.size() && unscattered_ == stack_;
+            return whole ? air_ : lobe_fit_->coefficients(cut_system(count).solve().to_air);
+        };
         Eigen::VectorXd above = Eigen::VectorXd::Zero(air_.size());
         if (top_rough_) {
             set_top_lobe();
@@ -143,7 +170,7 @@ private:
                     ++k;
                 }
             }
-            const Eigen::VectorXd cut = k == stack_.size() ? air_ : cut_albedo(k);
+            const Eigen::VectorXd cut = cut_albedo(k);
             add_lobe(first, cut - above);
             above = cut;
         }
@@ -192,15 +219,18 @@ private:
         const Lobe lobe{stack_[shape].distribution, effective_lobe_width(stack_, index)};
         lobes_.push_back(lobe);
         tables_.push_back(fit_lobe(lobe, [&](double c) {
-            const double in = smooth_response(top_, 1.0, c).transmission;
-            return in > 0.0 ? in * fit_->evaluate(coefficients, inner_cosine(c)) : 0.0;
+            const double in = smooth_response(lobe_top_, 1.0, c).transmission;
+            return in > 0.0 ? in * lobe_fit_->evaluate(coefficients, inner_cosine(lobe_top_, c))
+                            : 0.0;
         }));
     }
 
-    StackValues stack_;
-    RoughSystem system_;
-    std::shared_ptr<const CellFit> fit_;
-    SmoothStack top_;
+    StackValues stack_, unscattered_;
+    AngularSystem system_;
+    std::shared_ptr<const CellFit> fit_, lobe_fit_;
+    SmoothStack top_;             ///< to the first scatterer
+    SmoothStack lobe_top_;        ///< to the first rough interface, for what is not scattered
+    std::size_t first_rough_ = 0; ///< index of an interface, or the number of layers
     bool top_rough_ = false;
     double reciprocity_ = 1.0;
     double internal_reflectance_ = 0.0, residual_average_ = 0.0;
@@ -212,8 +242,8 @@ private:
 
 } // namespace
 
-std::shared_ptr<const AddingTransport> rough_transport(const StackValues& stack) {
-    return std::make_shared<RoughTransport>(stack);
+std::shared_ptr<const AddingTransport> angular_transport(const StackValues& stack) {
+    return std::make_shared<AngularTransport>(stack);
 }
 
 } // namespace reradiant

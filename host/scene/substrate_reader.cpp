@@ -1,0 +1,79 @@
+#include "host/scene/material_reader.h"
+#include "host/scene/spectrum_reader.h"
+#include "host/scene/stack_reader.h"
+#include "host/scene/textured_value.h"
+
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace reradiant {
+
+namespace {
+
+/// An image as a reflectance keeps its colours: `high` of the reference, 1 by default, times its
+/// rgb. With a `low` it is a texture like any other, by its grey value.
+bool read_reflectance_image(const TableReader& reader, Substrate& substrate, LoadState& state) {
+    const toml::node& node = reader.required("reflectance");
+    if (!is_texture_reference(node) || state.texture_scope == nullptr)
+        return false;
+    const TableReader reference(*node.as_table(), reader.file(),
+                                "the texture reference reflectance", {"texture", "low", "high"});
+    const TextureScope::Entry& entry = state.texture_scope->entry(reference);
+    const Texture& texture = state.textures[static_cast<std::size_t>(entry.texture)];
+    if (texture.type != TextureType::Image || texture.is_normal_map || reference.has("low") ||
+        entry.table->contains("low"))
+        return false;
+    substrate.reflectance_image = entry.texture;
+    substrate.reflectance = Spectrum::constant(1.0);
+    const SpectrumLimits limits = SpectrumLimits::fraction();
+    if (reference.has("high"))
+        substrate.reflectance = read_spectrum_key(reference, "high", limits, state);
+    else if (const toml::node* high = entry.table->get("high"))
+        substrate.reflectance = read_spectrum_node(
+            *high, entry.file, position_of(entry.file, high->source()), "high", limits, state);
+    return true;
+}
+
+/// `reflectance` or `reradiation` of a diffuse substrate.
+void read_diffuse_colour(const TableReader& reader, Substrate& substrate, LoadState& state) {
+    if (reader.has("reflectance") && reader.has("reradiation"))
+        reader.fail("reflectance", "both reflectance and reradiation are given",
+                    "a matrix holds its reflectance on the diagonal, fluorophores take it as "
+                    "reradiation.reflectance");
+    if (reader.has("reradiation"))
+        read_reradiation_key(reader, "reradiation", substrate, state);
+    else if (!reader.has("reflectance"))
+        substrate.reflectance = Spectrum::constant(0.5);
+    else if (!read_reflectance_image(reader, substrate, state))
+        substrate.reflectance =
+            read_spectrum_key(reader, "reflectance", SpectrumLimits::fraction(), state);
+}
+
+} // namespace
+
+Substrate read_substrate(const TableReader& material, LoadState& state) {
+    const std::string type =
+        type_of_table(material.plain_table("substrate"), material.file(), "[material.substrate]",
+                      {"lambert", "oren-nayar", "conductor"});
+    const auto keys = [&](std::vector<std::string> own) {
+        own.push_back("type");
+        return material.table("substrate", own);
+    };
+    Substrate substrate;
+    if (type == "conductor") {
+        substrate.type = SubstrateType::Conductor;
+        substrate.conductor = read_conductor(keys(conductor_keys()), state);
+    } else if (type == "oren-nayar") {
+        const TableReader reader = keys({"reflectance", "reradiation", "sigma"});
+        substrate.type = SubstrateType::OrenNayar;
+        substrate.sigma = read_number_key(reader, "sigma",
+                                          NumberRange::within(0.0, 0.5 * std::numbers::pi), state);
+        read_diffuse_colour(reader, substrate, state);
+    } else {
+        read_diffuse_colour(keys({"reflectance", "reradiation"}), substrate, state);
+    }
+    return substrate;
+}
+
+} // namespace reradiant
