@@ -15,7 +15,7 @@ struct WalkSubstrate {
     Eigen::MatrixXd matrix;
     double sigma = 0.0; ///< Oren-Nayar; 0: Lambertian
     /// A conductor at every band instead; empty: diffuse.
-    std::vector<ConductorValues> conductor;
+    std::vector<ConductorValues> conductor = {};
 };
 
 /// What light meets on its way down, from the air to the substrate.

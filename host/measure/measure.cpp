@@ -3,6 +3,7 @@
 #include "host/error.h"
 #include "host/measure/surface_angles.h"
 #include "host/measure/surface_model.h"
+#include "host/measure/walk_measurement.h"
 
 #include <fmt/format.h>
 
@@ -33,10 +34,6 @@ void check_request(const MeasureRequest& request) {
         check(request.theta_o_deg, "theta-o", 0.0, 90.0, polar);
         check(request.phi_deg, "phi", -360.0, 360.0 + 1e-9,
               "azimuths lie between -360 and 360 degrees");
-    }
-    if (request.model == Model::Walk) {
-        throw_input_error({}, "the model walk is not available in this version",
-                          "use adding or weidlich-wilkie");
     }
 }
 
@@ -152,6 +149,9 @@ WavelengthGrid bands_of(const Material& material, const MeasureRequest& request)
 Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_band,
                           const WavelengthGrid& bands, const MeasureRequest& request) {
     check_request(request);
+    if (request.model == Model::Walk) {
+        return measure_by_walk(stack, {.matrix = per_band}, bands, request);
+    }
     Measurement measurement;
     measurement.bands = bands;
     measurement.hemispherical = request.hemispherical;
@@ -182,6 +182,10 @@ Measurement measure_material(const Material& material, const MeasureRequest& req
     }
     check_request(resolved);
     const WavelengthGrid bands = bands_of(material, request);
+    if (resolved.model == Model::Walk) {
+        return measure_by_walk(material.stack, walk_substrate(material.substrate, bands), bands,
+                               resolved);
+    }
     Eigen::MatrixXd per_band = material.substrate.fluorescence_on(bands);
     for (int band = 0; band < bands.count; ++band) {
         per_band(band, band) += material.substrate.reflectance(bands.centre_nm(band));
