@@ -70,7 +70,7 @@ LostFlux::LostFlux(double eta, double alpha) {
             const auto k = static_cast<std::size_t>(cell);
             const double kept = kept_in_cell(eta, alpha, below, grid.edges[k], grid.edges[k + 1],
                                              static_cast<unsigned>(cumulative_.size()));
-            // towards grazing blinn's single scattering can create a little: nothing to give back
+            // nothing is created, but a full share is known to the rule's error only
             side.lost.push_back(std::max(1.0 - kept, 0.0));
             total += etendue(cell) * side.lost.back();
             cumulative_.push_back(total);

@@ -119,24 +119,57 @@ void add_single_values(const FacetLobes& lobes, const Vec3& v, std::span<Surface
     }
 }
 
+/// One scattering by Smith's facets, sampled as they are seen.
 SurfaceEvent scatter_once(const WalkSurface& surface, const FacetLobes& lobes, const Vec3& v,
                           WalkRandom& random) {
     const Vec3 h = lobes.sample(v, random);
-    const double cos_v = kernels::vec3_dot(v, h);
-    if (!(cos_v > 0.0)) {
+    if (!(kernels::vec3_dot(v, h) > 0.0)) {
         return {true, v, 0.0, 1.0};
     }
     const Branch branch = choose_branch(surface, lobes.reflectance(v, h), random);
     SurfaceEvent event;
     event.same_side = branch.reflects;
     event.w = branch.reflects ? lobes.reflected(v, h) : lobes.refracted(v, h);
-    if (!(event.w.z > 0.0)) {
-        return {branch.reflects, event.w, 0.0, branch.weight};
-    }
-    const double sampled = lobes.is_blinn() ? cos_v / (v.z * h.z) : 1.0;
-    const double kept = lobes.visible(v, event.w, h) * sampled;
+    const double kept = event.w.z > 0.0 ? lobes.visible(v, event.w, h) : 0.0;
     event.weight = branch.weight * kept;
     event.lost = branch.weight * (1.0 - kept);
+    return event;
+}
+
+/// One scattering by V-cavities. Their facets are sampled by D alone, with weights between 0 and
+/// 2 whose product would grow without bound in a white stack; one of 16 facets and their branches,
+/// drawn by its weight, has a weight near 1 (resampled importance sampling, Talbot et al. 2005).
+SurfaceEvent scatter_in_cavity(const WalkSurface& surface, const FacetLobes& lobes, const Vec3& v,
+                               WalkRandom& random) {
+    constexpr int facets = 16;
+    SurfaceEvent event;
+    double arrives = 0.0;
+    const auto offer = [&](bool reflects, const Vec3& w, double share, double kept) {
+        arrives += share / facets;
+        if (!(w.z > 0.0) || !(share * kept > 0.0)) {
+            return;
+        }
+        event.weight += share * kept / facets;
+        if (random.next() * event.weight < share * kept / facets) {
+            event.same_side = reflects;
+            event.w = w;
+        }
+    };
+    for (int k = 0; k < facets; ++k) {
+        const Vec3 h = lobes.sample(v, random);
+        const double cos_v = kernels::vec3_dot(v, h);
+        if (!(cos_v > 0.0)) {
+            continue;
+        }
+        const double r = lobes.reflectance(v, h), sampled = cos_v / (v.z * h.z);
+        const Vec3 reflected = lobes.reflected(v, h);
+        offer(true, reflected, r, sampled * lobes.visible(v, reflected, h));
+        if (!surface.is_conductor) {
+            const Vec3 refracted = lobes.refracted(v, h);
+            offer(false, refracted, 1.0 - r, sampled * lobes.visible(v, refracted, h));
+        }
+    }
+    event.lost = (surface.is_conductor ? arrives : 1.0) - event.weight;
     return event;
 }
 
@@ -159,7 +192,7 @@ SurfaceEvent scatter_and_give_back(const WalkSurface& surface, bool from_below,
     }
     add_single_values(lobes, v, targets);
     if (random.next() >= lost) {
-        SurfaceEvent event = scatter_once(surface, lobes, v, random);
+        SurfaceEvent event = scatter_in_cavity(surface, lobes, v, random);
         event.weight /= 1.0 - lost;
         event.lost = 0.0;
         return event;
@@ -296,7 +329,8 @@ SurfaceEvent meet_rough_surface(const WalkSurface& surface, bool from_below, con
         return scatter_and_give_back(surface, from_below, lobes, v, targets, random);
     }
     add_single_values(lobes, v, targets);
-    return scatter_once(surface, lobes, v, random);
+    return lobes.is_blinn() ? scatter_in_cavity(surface, lobes, v, random)
+                            : scatter_once(surface, lobes, v, random);
 }
 
 } // namespace reradiant
