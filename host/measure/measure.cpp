@@ -3,6 +3,7 @@
 #include "host/error.h"
 #include "host/measure/surface_angles.h"
 #include "host/measure/surface_model.h"
+#include "host/measure/walk_measurement.h"
 #include "host/scene/model_choice.h"
 
 #include <fmt/format.h>
@@ -34,10 +35,6 @@ void check_request(const MeasureRequest& request) {
         check(request.theta_o_deg, "theta-o", 0.0, 90.0, polar);
         check(request.phi_deg, "phi", -360.0, 360.0 + 1e-9,
               "azimuths lie between -360 and 360 degrees");
-    }
-    if (request.model == Model::Walk) {
-        throw_input_error({}, "the model walk is not available in this version",
-                          "use adding or weidlich-wilkie");
     }
 }
 
@@ -144,9 +141,12 @@ WavelengthGrid bands_of(const Material& material, const MeasureRequest& request)
 
 } // namespace
 
-Measurement measure_substrate(const LayerStack& stack, const MeasuredSubstrate& substrate,
+Measurement measure_substrate(const LayerStack& stack, const WalkSubstrate& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request) {
     check_request(request);
+    if (request.model == Model::Walk) {
+        return measure_by_walk(stack, substrate, bands, request);
+    }
     Measurement measurement;
     measurement.bands = bands;
     measurement.hemispherical = request.hemispherical;
@@ -176,22 +176,6 @@ Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_ba
     return measure_substrate(stack, {per_band, 0.0, {}}, bands, request);
 }
 
-MeasuredSubstrate measured_substrate(const Substrate& substrate, const WavelengthGrid& bands) {
-    MeasuredSubstrate measured;
-    if (substrate.type == SubstrateType::Conductor) {
-        for (const double nm : bands.centres_nm()) {
-            measured.conductor.push_back(conductor_at(substrate.conductor, nm));
-        }
-        return measured;
-    }
-    measured.sigma = substrate.type == SubstrateType::OrenNayar ? substrate.sigma : 0.0;
-    measured.matrix = substrate.fluorescence_on(bands);
-    for (int band = 0; band < bands.count; ++band) {
-        measured.matrix(band, band) += substrate.reflectance(bands.centre_nm(band));
-    }
-    return measured;
-}
-
 Measurement measure_material(const Material& material, const MeasureRequest& request) {
     MeasureRequest resolved = request;
     const ModelChoice choice = choose_model(material, request.model, ModelUse::Measure);
@@ -199,7 +183,7 @@ Measurement measure_material(const Material& material, const MeasureRequest& req
     check_request(resolved);
     const WavelengthGrid bands = bands_of(material, request);
     Measurement measurement = measure_substrate(
-        material.stack, measured_substrate(material.substrate, bands), bands, resolved);
+        material.stack, walk_substrate(material.substrate, bands), bands, resolved);
     if (!choice.reason.empty()) {
         measurement.notes.insert(measurement.notes.begin(), choice.reason);
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/measure/surface_model.h"
+#include "host/layers/walk_elements.h"
 #include "host/scene/scene.h"
 
 #include <Eigen/Core>
@@ -21,6 +21,8 @@ struct MeasureRequest {
     bool hemispherical = false; ///< directional-hemispherical; theta_o and phi are not used
     Model model = Model::Auto;
     std::optional<WavelengthGrid> bands; ///< empty: the matrix's own grid
+    long samples = 0;  ///< of the walk: paths for each theta_i, 0: default_walk_samples
+    unsigned seed = 0; ///< of the walk
 };
 
 enum class MeasuredPart { Diffuse, Specular };
@@ -44,8 +46,8 @@ struct Measurement {
 
 /// Measures a material with the model that choose_model picks; a note says why. Spectra are taken
 /// at band centres. Without `bands` the matrix's own grid is used; without a matrix, 300-780 nm in
-/// 10 nm steps when it fluoresces, else 380-780 nm. Input Error for angles out of range, the model
-/// `walk`, and a matrix whose two grids make no common one.
+/// 10 nm steps when it fluoresces, else 380-780 nm. Input Error for angles out of range and for a
+/// matrix whose two grids make no common one.
 Measurement measure_material(const Material& material, const MeasureRequest& request);
 
 /// The same for a stack over a substrate given by its per-band matrix, (bands, bands), rows =
@@ -54,11 +56,8 @@ Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_ba
                           const WavelengthGrid& bands, const MeasureRequest& request);
 
 /// The same over any substrate.
-Measurement measure_substrate(const LayerStack& stack, const MeasuredSubstrate& substrate,
+Measurement measure_substrate(const LayerStack& stack, const WalkSubstrate& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request);
-
-/// A substrate at the band centres.
-MeasuredSubstrate measured_substrate(const Substrate& substrate, const WavelengthGrid& bands);
 
 /// Writes the CSV of INTERFACE "measure": notes as # lines, then the header and one line a row, 12
 /// significant digits. Atomic.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/layers/stack.h"
+#include "host/layers/walk_elements.h"
 #include "host/spectral/grid.h"
 #include "kernels/portable.h"
 
@@ -11,15 +11,6 @@
 #include <vector>
 
 namespace reradiant {
-
-/// The bottom of a stack, at the band centres.
-struct MeasuredSubstrate {
-    /// Diffuse: per-band re-radiation matrix, (bands, bands), rows = emission.
-    Eigen::MatrixXd matrix;
-    double sigma = 0.0; ///< Oren-Nayar, radians; 0: Lambertian
-    /// A conductor at every band instead; empty: diffuse.
-    std::vector<ConductorValues> conductor;
-};
 
 /// What a closed model says of a stack over a substrate, at the band centres. No cosine in
 /// directional values. `diffuse` reached the substrate, of whatever type; `specular` never did.
@@ -46,12 +37,12 @@ public:
 
 /// Model B, every interreflection. Input Error for a conductor and for stacks that adding refuses.
 std::unique_ptr<SurfaceModel> adding_surface(const LayerStack& stack,
-                                             const MeasuredSubstrate& substrate,
+                                             const WalkSubstrate& substrate,
                                              const WavelengthGrid& bands);
 /// Model A, Weidlich and Wilkie 2007, for anything. Hemispherical values are integrated
 /// numerically, to about 1e-5 of the incident light (1e-4 with blinn, whose G has kinks).
 std::unique_ptr<SurfaceModel> weidlich_wilkie_surface(const LayerStack& stack,
-                                                      const MeasuredSubstrate& substrate,
+                                                      const WalkSubstrate& substrate,
                                                       const WavelengthGrid& bands);
 
 } // namespace reradiant
