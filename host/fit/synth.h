@@ -46,15 +46,18 @@ SynthRecipe read_synth_recipe(const std::filesystem::path& file);
 /// The substrate's matrix on the recipe's grids: what a fit should find.
 ReradiationMatrix synth_truth(const SynthRecipe& recipe);
 
-/// What the instrument sees without noise, one matrix (emission, excitation) a geometry: pi times
-/// the BRRDF's diffuse part, or the matrix itself without geometries. std::invalid_argument when
-/// the two grids are not parts of one grid but must be (a stack without bandpasses), and when the
-/// bandpasses need too fine a grid.
+/// What the instrument sees without noise and spill, one matrix (emission, excitation) a geometry:
+/// pi times the BRRDF's diffuse part, or the matrix itself without geometries.
+/// std::invalid_argument when the two grids are not parts of one grid but must be (a stack without
+/// bandpasses), and when the bandpasses need too fine a grid.
 std::vector<Eigen::MatrixXd> synth_noise_free(const SynthRecipe& recipe);
 
+/// Adds the reflected light that emission bands beside the diagonal see.
+void add_spill(const SynthRecipe& recipe, Eigen::MatrixXd& values);
+
 struct SynthResult {
-    BispectralData data; ///< sigma: the noise's standard deviation at the noise-free signal
-    double peak = 0.0;   ///< largest fluorescent entry without noise
+    BispectralData data;    ///< sigma: the noise's standard deviation at the noise-free signal
+    double peak = 0.0;      ///< largest fluorescent entry without noise
     double noise_rms = 0.0; ///< of the off-diagonal entries
 };
 
