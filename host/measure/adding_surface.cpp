@@ -20,7 +20,7 @@ namespace {
 
 class AddingSurface final : public SurfaceModel {
 public:
-    AddingSurface(const LayerStack& stack, const WalkSubstrate& substrate,
+    AddingSurface(const LayerStack& stack, const MeasuredSubstrate& substrate,
                   const WavelengthGrid& bands)
         : stacks_(values_at(stack, bands)), sigma_(substrate.sigma), first_(substrate.matrix) {
         Eigen::VectorXd r(bands.count);
@@ -79,6 +79,15 @@ public:
     double hemispherical_specular(int band, double c) const override {
         return transport(band).specular_albedo(c);
     }
+    std::vector<AddingTransport::Lobe> lobes() const override {
+        const int middle = static_cast<int>(transports_.size()) / 2;
+        std::vector<AddingTransport::Lobe> all = transport(middle).deeper_lobes();
+        if (transport(middle).has_top_lobe()) {
+            all.push_back({stack_at(middle).front().distribution, stack_at(middle).front().alpha});
+        }
+        return all;
+    }
+    bool has_conductor() const override { return false; }
     double lost(int band, double c) const override { return transport(band).lost(c); }
 
 private:
@@ -118,7 +127,7 @@ private:
 } // namespace
 
 std::unique_ptr<SurfaceModel> adding_surface(const LayerStack& stack,
-                                             const WalkSubstrate& substrate,
+                                             const MeasuredSubstrate& substrate,
                                              const WavelengthGrid& bands) {
     if (!substrate.conductor.empty()) {
         throw_input_error({}, "adding does not know conductors",

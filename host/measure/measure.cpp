@@ -141,7 +141,7 @@ WavelengthGrid bands_of(const Material& material, const MeasureRequest& request)
 
 } // namespace
 
-Measurement measure_substrate(const LayerStack& stack, const WalkSubstrate& substrate,
+Measurement measure_substrate(const LayerStack& stack, const MeasuredSubstrate& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request) {
     check_request(request);
     if (request.model == Model::Walk) {
@@ -176,6 +176,22 @@ Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_ba
     return measure_substrate(stack, {per_band, 0.0, {}}, bands, request);
 }
 
+MeasuredSubstrate measured_substrate(const Substrate& substrate, const WavelengthGrid& bands) {
+    MeasuredSubstrate measured;
+    if (substrate.type == SubstrateType::Conductor) {
+        for (const double nm : bands.centres_nm()) {
+            measured.conductor.push_back(conductor_at(substrate.conductor, nm));
+        }
+        return measured;
+    }
+    measured.sigma = substrate.type == SubstrateType::OrenNayar ? substrate.sigma : 0.0;
+    measured.matrix = substrate.fluorescence_on(bands);
+    for (int band = 0; band < bands.count; ++band) {
+        measured.matrix(band, band) += substrate.reflectance(bands.centre_nm(band));
+    }
+    return measured;
+}
+
 Measurement measure_material(const Material& material, const MeasureRequest& request) {
     MeasureRequest resolved = request;
     const ModelChoice choice = choose_model(material, request.model, ModelUse::Measure);
@@ -183,7 +199,7 @@ Measurement measure_material(const Material& material, const MeasureRequest& req
     check_request(resolved);
     const WavelengthGrid bands = bands_of(material, request);
     Measurement measurement = measure_substrate(
-        material.stack, walk_substrate(material.substrate, bands), bands, resolved);
+        material.stack, measured_substrate(material.substrate, bands), bands, resolved);
     if (!choice.reason.empty()) {
         measurement.notes.insert(measurement.notes.begin(), choice.reason);
     }

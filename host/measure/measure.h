@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/layers/walk_elements.h"
+#include "host/measure/surface_model.h"
 #include "host/scene/scene.h"
 
 #include <Eigen/Core>
@@ -56,8 +56,11 @@ Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_ba
                           const WavelengthGrid& bands, const MeasureRequest& request);
 
 /// The same over any substrate.
-Measurement measure_substrate(const LayerStack& stack, const WalkSubstrate& substrate,
+Measurement measure_substrate(const LayerStack& stack, const MeasuredSubstrate& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request);
+
+/// A substrate at the band centres.
+MeasuredSubstrate measured_substrate(const Substrate& substrate, const WavelengthGrid& bands);
 
 /// Writes the CSV of INTERFACE "measure": notes as # lines, then the header and one line a row, 12
 /// significant digits. Atomic.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "host/layers/adding.h"
 #include "host/layers/walk_elements.h"
 #include "host/spectral/grid.h"
 #include "kernels/portable.h"
@@ -11,6 +12,8 @@
 #include <vector>
 
 namespace reradiant {
+
+using MeasuredSubstrate = WalkSubstrate;
 
 /// What a closed model says of a stack over a substrate, at the band centres. No cosine in
 /// directional values. `diffuse` reached the substrate, of whatever type; `specular` never did.
@@ -31,18 +34,22 @@ public:
     virtual Eigen::MatrixXd hemispherical_diffuse(double cos_theta) const = 0;
     /// Share of the flux that leaves without having reached the substrate, delta included.
     virtual double hemispherical_specular(int band, double cos_theta) const = 0;
+    /// Rough lobes over the half vector in air that cover the peaks of the two parts.
+    virtual std::vector<AddingTransport::Lobe> lobes() const = 0;
+    /// True when `diffuse` is the reflection of a conductor.
+    virtual bool has_conductor() const = 0;
     /// Share of the flux that single scattering loses on the way in.
     virtual double lost(int band, double cos_theta) const = 0;
 };
 
 /// Model B, every interreflection. Input Error for a conductor and for stacks that adding refuses.
 std::unique_ptr<SurfaceModel> adding_surface(const LayerStack& stack,
-                                             const WalkSubstrate& substrate,
+                                             const MeasuredSubstrate& substrate,
                                              const WavelengthGrid& bands);
 /// Model A, Weidlich and Wilkie 2007, for anything. Hemispherical values are integrated
 /// numerically, to about 1e-5 of the incident light (1e-4 with blinn, whose G has kinks).
 std::unique_ptr<SurfaceModel> weidlich_wilkie_surface(const LayerStack& stack,
-                                                      const WalkSubstrate& substrate,
+                                                      const MeasuredSubstrate& substrate,
                                                       const WavelengthGrid& bands);
 
 } // namespace reradiant

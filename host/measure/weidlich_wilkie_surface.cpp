@@ -32,7 +32,7 @@ bool has_lobes(const StackValues& stack) {
 
 class WeidlichWilkieSurface final : public SurfaceModel {
 public:
-    WeidlichWilkieSurface(const LayerStack& stack, const WalkSubstrate& substrate,
+    WeidlichWilkieSurface(const LayerStack& stack, const MeasuredSubstrate& substrate,
                           const WavelengthGrid& bands)
         : sigma_(substrate.sigma), matrix_(substrate.matrix) {
         std::vector<StackValues> stacks = values_at(stack, bands);
@@ -67,6 +67,10 @@ public:
     }
     Eigen::MatrixXd hemispherical_diffuse(double c) const override;
     double hemispherical_specular(int band, double c) const override;
+    std::vector<AddingTransport::Lobe> lobes() const override;
+    bool has_conductor() const override {
+        return !bands_.empty() && bands_.front().conductor.has_value();
+    }
     double lost(int, double) const override { return 0.0; }
 
 private:
@@ -74,7 +78,6 @@ private:
     const WeidlichWilkieResidual& residual(int band) const {
         return residuals_[static_cast<std::size_t>(band)];
     }
-    bool has_conductor() const { return !bands_.empty() && bands_.front().conductor.has_value(); }
     int bands() const { return static_cast<int>(bands_.size()); }
 
     /// The residual is one reciprocal product for all parts; what of it met the conductor is its
@@ -111,6 +114,29 @@ Eigen::MatrixXd WeidlichWilkieSurface::diffuse(const Vec3& wi, const Vec3& wo) c
                     WeidlichWilkie::diffuse_shape(stack, sigma_, wi, wo);
     }
     return out.asDiagonal() * matrix_ * in.asDiagonal();
+}
+
+/// A slope of the half vector in a medium is as many times as large in air as its IOR says.
+std::vector<AddingTransport::Lobe> WeidlichWilkieSurface::lobes() const {
+    const BandValues& middle = at(bands() / 2);
+    std::vector<AddingTransport::Lobe> all;
+    double ior = 1.0;
+    const auto add = [&](const auto& part) {
+        if (part.alpha > 0.0) {
+            all.push_back({part.distribution, std::min(1.0, ior * part.alpha)});
+        }
+    };
+    for (const LayerValues& layer : middle.stack) {
+        add(layer);
+        ior = layer.ior;
+        if (layer.flake_coverage > 0.0) {
+            add(layer.flakes);
+        }
+    }
+    if (middle.conductor) {
+        add(*middle.conductor);
+    }
+    return all;
 }
 
 /// Outgoing directions of one half of the hemisphere (the other half is its mirror image) with
@@ -207,7 +233,7 @@ double WeidlichWilkieSurface::hemispherical_specular(int band, double c) const {
 } // namespace
 
 std::unique_ptr<SurfaceModel> weidlich_wilkie_surface(const LayerStack& stack,
-                                                      const WalkSubstrate& substrate,
+                                                      const MeasuredSubstrate& substrate,
                                                       const WavelengthGrid& bands) {
     return std::make_unique<WeidlichWilkieSurface>(stack, substrate, bands);
 }

@@ -36,11 +36,12 @@ Layer layer(double ior, double alpha = 0.0, Scattering scattering = Scattering::
     made.scattering = scattering;
     return made;
 }
-WalkSubstrate oren_nayar(double reflectance, double sigma) {
+MeasuredSubstrate oren_nayar(double reflectance, double sigma) {
     return {Eigen::MatrixXd::Constant(1, 1, reflectance), sigma, {}};
 }
-WalkSubstrate conductor(double ior, double kappa, double alpha, Distribution d = Distribution::Ggx,
-                        Scattering s = Scattering::Multiple) {
+MeasuredSubstrate conductor(double ior, double kappa, double alpha,
+                            Distribution d = Distribution::Ggx,
+                            Scattering s = Scattering::Multiple) {
     return {{}, 0.0, {{ior, kappa, d, alpha, s}}};
 }
 
@@ -55,13 +56,15 @@ MeasureRequest hemispherical(Model model, std::vector<double> thetas) {
 struct Parts {
     double diffuse = 0.0, specular = 0.0;
 };
-Parts whole(const LayerStack& stack, const WalkSubstrate& substrate, Model model, double theta) {
+Parts whole(const LayerStack& stack, const MeasuredSubstrate& substrate, Model model,
+            double theta) {
     const auto rows = measure_substrate(stack, substrate, one, hemispherical(model, {theta})).rows;
     return {rows.at(0).value, rows.at(1).value};
 }
 
 /// Directional rows summed over the hemisphere: midpoint rule of 90 x 90 over one half.
-Parts integral(const LayerStack& stack, const WalkSubstrate& substrate, Model model, double theta) {
+Parts integral(const LayerStack& stack, const MeasuredSubstrate& substrate, Model model,
+               double theta) {
     MeasureRequest request;
     request.model = model;
     request.theta_i_deg = {theta};
@@ -130,7 +133,7 @@ TEST(MeasureMaterials, HemisphericalIsTheIntegralOfTheDirectional) {
     flaked.flakes->reflector.alpha = 0.3;
     struct Case {
         LayerStack stack;
-        WalkSubstrate substrate;
+        MeasuredSubstrate substrate;
         Model model;
     };
     const std::vector<Case> cases{
