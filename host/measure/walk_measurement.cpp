@@ -81,22 +81,6 @@ void add_notes(Measurement& measurement, const LayerWalk& walk, long samples, un
 
 } // namespace
 
-WalkSubstrate walk_substrate(const Substrate& substrate, const WavelengthGrid& bands) {
-    WalkSubstrate result;
-    result.sigma = substrate.type == SubstrateType::OrenNayar ? substrate.sigma : 0.0;
-    if (substrate.type == SubstrateType::Conductor) {
-        for (const double nm : bands.centres_nm()) {
-            result.conductor.push_back(conductor_at(substrate.conductor, nm));
-        }
-        return result;
-    }
-    result.matrix = substrate.fluorescence_on(bands);
-    for (int band = 0; band < bands.count; ++band) {
-        result.matrix(band, band) += substrate.reflectance(bands.centre_nm(band));
-    }
-    return result;
-}
-
 Measurement measure_by_walk(const LayerStack& stack, const WalkSubstrate& substrate,
                             const WavelengthGrid& bands, const MeasureRequest& request) {
     Measurement measurement;

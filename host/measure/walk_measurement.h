@@ -8,9 +8,6 @@ namespace reradiant {
 /// Paths for each incident angle that a request without `samples` gets.
 inline constexpr long default_walk_samples = 1L << 16U;
 
-/// The substrate of a material as the walk takes it, at the band centres.
-WalkSubstrate walk_substrate(const Substrate& substrate, const WavelengthGrid& bands);
-
 /// measure_stack by model C: every value with its standard error, which is 0 where nothing was
 /// found or nothing varies. The request has been checked.
 Measurement measure_by_walk(const LayerStack& stack, const WalkSubstrate& substrate,
