@@ -2,6 +2,7 @@
 
 #include "host/layers/adding.h"
 #include "host/layers/effective_matrix.h"
+#include "host/layers/quadrature.h"
 #include "host/layers/walk_estimate.h"
 
 #include <cmath>
