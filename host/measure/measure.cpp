@@ -3,6 +3,7 @@
 #include "host/error.h"
 #include "host/measure/surface_angles.h"
 #include "host/measure/surface_model.h"
+#include "host/measure/walk_measurement.h"
 #include "host/scene/model_choice.h"
 
 #include <fmt/format.h>
@@ -34,10 +35,6 @@ void check_request(const MeasureRequest& request) {
         check(request.theta_o_deg, "theta-o", 0.0, 90.0, polar);
         check(request.phi_deg, "phi", -360.0, 360.0 + 1e-9,
               "azimuths lie between -360 and 360 degrees");
-    }
-    if (request.model == Model::Walk) {
-        throw_input_error({}, "the model walk is not available in this version",
-                          "use adding or weidlich-wilkie");
     }
 }
 
@@ -147,6 +144,9 @@ WavelengthGrid bands_of(const Material& material, const MeasureRequest& request)
 Measurement measure_substrate(const LayerStack& stack, const MeasuredSubstrate& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request) {
     check_request(request);
+    if (request.model == Model::Walk) {
+        return measure_by_walk(stack, substrate, bands, request);
+    }
     Measurement measurement;
     measurement.bands = bands;
     measurement.hemispherical = request.hemispherical;

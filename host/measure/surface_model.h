@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/layers/stack.h"
+#include "host/layers/walk_elements.h"
 #include "host/spectral/grid.h"
 #include "kernels/portable.h"
 
@@ -12,14 +13,7 @@
 
 namespace reradiant {
 
-/// The bottom of a stack, at the band centres.
-struct MeasuredSubstrate {
-    /// Diffuse: per-band re-radiation matrix, (bands, bands), rows = emission.
-    Eigen::MatrixXd matrix;
-    double sigma = 0.0; ///< Oren-Nayar, radians; 0: Lambertian
-    /// A conductor at every band instead; empty: diffuse.
-    std::vector<ConductorValues> conductor;
-};
+using MeasuredSubstrate = WalkSubstrate;
 
 /// What a closed model says of a stack over a substrate, at the band centres. No cosine in
 /// directional values. `diffuse` reached the substrate, of whatever type; `specular` never did.

@@ -13,6 +13,9 @@ struct FeatureBit {
     const char* why_off;
 };
 
+/// Deeper lobes of kernels that are specialised for nothing: more than most scenes have.
+constexpr int generic_lobes = 4;
+
 constexpr FeatureBit feature_bits[] = {
     {"fluorescence", "FEATURE_FLUORESCENCE", &RenderFeatures::fluorescence,
      "no substrate re-radiates"},
@@ -57,7 +60,7 @@ RenderFeatures RenderFeatures::all() {
     RenderFeatures features;
     for (const FeatureBit& bit : feature_bits)
         features.*bit.value = true;
-    features.lobes = 1;
+    features.lobes = generic_lobes;
     return features;
 }
 
