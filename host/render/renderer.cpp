@@ -6,7 +6,9 @@
 #include "host/render/film_sums.h"
 #include "host/render/render_identity.h"
 #include "host/render/scene_tables.h"
+#include "host/render/stack_optics.h"
 #include "host/render/wavefront.h"
+#include "host/scene/model_choice.h"
 
 #include <fmt/format.h>
 
@@ -91,6 +93,25 @@ void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables
     result.notes = tables.notes;
 }
 
+std::uint64_t most_deeper_lobes(const Scene& scene, Model model) {
+    int most = 0;
+    for (const Material& material : scene.materials)
+        most = std::max(most, deeper_lobe_count(
+                                  material, choose_model(material, model, ModelUse::Render).model));
+    return static_cast<std::uint64_t>(most);
+}
+
+/// Whether images colour lights or reflectances, so that vertices keep colours.
+bool has_colours(const Scene& scene) {
+    const auto is_image = [](const Light& light) {
+        const auto* sky = std::get_if<EnvironmentLight>(&light);
+        return sky != nullptr && sky->image >= 0;
+    };
+    return std::any_of(scene.lights.begin(), scene.lights.end(), is_image) ||
+           std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [](const Material& m) { return m.substrate.reflectance_image >= 0; });
+}
+
 /// The checkpoint file of one render.
 class Checkpoints {
 public:
@@ -157,9 +178,12 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
     const std::uint64_t film = pixels * (rows * lanes + film_statistics_per_pixel) * 4;
     const std::uint64_t image = pixels * (static_cast<std::uint64_t>(plan.film.count) + 5) * 4;
     const std::uint64_t depth = static_cast<std::uint64_t>(scene.integrator.max_depth) + 1;
+    const std::uint64_t vertex = sizeof(VertexRecord) + sizeof(RayRecord) +
+                                 2 * sizeof(float) * most_deeper_lobes(scene, options.model) +
+                                 (has_colours(scene) ? VERTEX_COLOURS * sizeof(float) : 0);
     const std::uint64_t paths =
-        options.batch_paths * (depth * (sizeof(VertexRecord) + sizeof(RayRecord)) + lanes * 4 +
-                               sizeof(RayRecord) + sizeof(HitRecord) + sizeof(PathState));
+        options.batch_paths *
+        (depth * vertex + lanes * 4 + sizeof(RayRecord) + sizeof(HitRecord) + sizeof(PathState));
     // The film is mapped where it is; the image is held once more while it is written.
     return film + 2 * image + paths;
 }

@@ -98,6 +98,23 @@ void warn_outside_bands(const Scene& scene, const LoadState& state) {
     state.warn_outside(range[0], range[1]);
 }
 
+/// Constant environments add up to one; an image is looked up alone.
+void read_lights(const TableReader& root, Scene& scene, LoadState& state) {
+    const auto lights = root.tables("light");
+    int skies = 0, images = 0;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        scene.lights.push_back(read_light(*lights[i], root.file(), i, state));
+        if (const auto* sky = std::get_if<EnvironmentLight>(&scene.lights.back())) {
+            ++skies;
+            images += sky->image >= 0 ? 1 : 0;
+        }
+        if (images > 0 && skies > 1)
+            throw_input_error(position_of(root.file(), lights[i]->source()),
+                              "an environment image stands beside another environment",
+                              "put both into one image");
+    }
+}
+
 } // namespace
 
 Scene load_scene(const std::filesystem::path& file) {
@@ -115,9 +132,7 @@ Scene load_scene(const std::filesystem::path& file) {
         "camera", {"origin", "target", "up", "fov_deg", "lens_radius", "focus_distance"}));
     if (root.has("integrator"))
         scene.integrator = read_integrator(root.table("integrator", {"max_depth", "min_depth"}));
-    const auto lights = root.tables("light");
-    for (std::size_t i = 0; i < lights.size(); ++i)
-        scene.lights.push_back(read_light(*lights[i], root.file(), i, state));
+    read_lights(root, scene, state);
     const auto materials = read_materials(root, scene, state);
     const auto shapes = root.tables("shape");
     for (std::size_t i = 0; i < shapes.size(); ++i)
