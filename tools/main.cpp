@@ -25,6 +25,7 @@ void add_commands(CLI::App& program, CommandContext& context) {
     add_synth_command(program, context);
     add_colour_command(program, context);
     add_compare_command(program, context);
+    add_merge_command(program, context);
     add_validate_command(program, context);
     add_info_command(program, context);
     add_convert_command(program, context);
