@@ -24,6 +24,7 @@ void add_commands(CLI::App& program, CommandContext& context) {
     add_measure_command(program, context);
     add_synth_command(program, context);
     add_colour_command(program, context);
+    add_fit_command(program, context);
     add_compare_command(program, context);
     add_merge_command(program, context);
     add_validate_command(program, context);
