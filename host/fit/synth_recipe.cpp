@@ -2,7 +2,6 @@
 #include "host/fit/synth_band.h"
 #include "host/scene/spectrum_reader.h"
 #include "host/scene/stack_reader.h"
-#include "host/scene/textured_value.h"
 
 #include <fmt/format.h>
 
@@ -168,16 +167,21 @@ void refuse_too_much_light(const TableReader& root, const SynthRecipe& recipe) {
     constexpr double rounding = 1e-9;
     const double from = recipe.excitation.lower_edge_nm(0);
     const double to = recipe.excitation.upper_edge_nm(recipe.excitation.count - 1);
+    double largest = 0.0, largest_at = from;
     for (double nm = from; nm <= to; nm += 1.0) {
         double sum = recipe.reflectance(nm);
         for (const Fluorophore& fluorophore : recipe.fluorophores)
             sum += fluorophore.excitation(nm);
-        if (sum > 1.0 + rounding)
-            root.fail(root.has("reflectance") ? "reflectance" : "fluorophore",
-                      fmt::format("reflectance and absorptances are together {:.4g} at {:.6g} nm",
-                                  sum, nm),
-                      "light is either reflected or absorbed: at most 1");
+        if (sum > largest) {
+            largest = sum;
+            largest_at = nm;
+        }
     }
+    if (largest > 1.0 + rounding)
+        root.fail(root.has("reflectance") ? "reflectance" : "fluorophore",
+                  fmt::format("reflectance and absorptances are together {:.4g} at {:.6g} nm",
+                              largest, largest_at),
+                  "light is either reflected or absorbed: at most 1");
 }
 
 void read_stack(const TableReader& root, SynthRecipe& recipe, LoadState& state) {
@@ -252,8 +256,6 @@ SynthRecipe read_synth_recipe(const std::filesystem::path& file) {
     const TableReader root(table, file.string(), "a recipe",
                            {"emission_nm", "excitation_nm", "reflectance", "fluorophore",
                             "material", "geometry", "instrument", "noise"});
-    TextureScope no_textures(root, state);
-    state.texture_scope = &no_textures;
     SynthRecipe recipe;
     if (root.has("emission_nm"))
         recipe.emission = read_grid(root, "emission_nm");

@@ -51,7 +51,7 @@ Standardised standardised(const SynthRecipe& recipe, unsigned seeds) {
 constexpr double sidak_of_8 = 5.29;
 
 void expect_unit_noise(const SynthRecipe& recipe, const char* name) {
-    const Standardised seen = standardised(recipe, 6);
+    const Standardised seen = standardised(recipe, 12);
     ASSERT_GT(seen.count, 2000.0) << name;
     EXPECT_NEAR(seen.mean, 0.0, sidak_of_8 / std::sqrt(seen.count)) << name;
     // Variance of z^2: 2, and at most 1/100 more for 100 photons. It sees a sigma wrong by 4 %.

@@ -100,14 +100,14 @@ TEST_F(SynthRecipes, BadRecipesAreRefusedAtTheirPlace) {
     expect_refused("absorptance = 0.8", "absorptance = 1.2", ":3:1", "absorptance");
     expect_refused("quantum_yield = 0.9", "quantum_yield = 90", ":4:1", "quantum_yield");
     expect_refused("peak_nm = 480", "peak_nm = 48", ":5:16", "peak_nm");
-    expect_refused("width_nm = 60", "width_nm = 60, width_per_cm = 2500", ":5:47", "both");
+    expect_refused("width_nm = 60", "width_nm = 60, width_per_cm = 2500", ":5:46", "both");
     expect_refused("width_nm = 60, ", "", ":5:14", "width_nm");
-    expect_refused("skew = 0.7", "skew = 0", ":5:47", "skew");
+    expect_refused("skew = 0.7", "skew = 0", ":5:46", "skew");
     expect_refused("emission = { peak_nm = 560, width_nm = 50 }", "", ":2:1", "emission");
     expect_refused("[[fluorophore]]", "[noise]\nread_of_peak = -1\n[[fluorophore]]", ":3:1",
                    "read_of_peak");
-    expect_refused("[[fluorophore]]", "[[material.layer]]\nior = 1.5\n[[fluorophore]]", ":2:12",
-                   "no");
+    expect_refused("[[fluorophore]]", "[[material.layer]]\nior = 1.5\n[[fluorophore]]", ":2:3",
+                   "none is given");
     expect_refused("[[fluorophore]]",
                    "[geometry]\ntheta_i_deg = [0]\ntheta_o_deg = [95]\nphi_deg = [0]\n"
                    "[[fluorophore]]",
@@ -133,6 +133,17 @@ TEST_F(SynthRecipes, ContradictoryEmissionsAreRefused) {
     expect_refused(emission, emission + "zero_zero_nm = 500\n", ":7:1", "mirror");
     expect_refused(emission, "emission = { width_nm = 50 }\nstokes_shift_nm = 900\n", ":7:1",
                    "1380");
+}
+
+TEST_F(SynthRecipes, Case36TruncatedRecipesAreRefusedOrRead) {
+    const std::string whole = good;
+    for (std::size_t length = 0; length < whole.size(); ++length) {
+        try {
+            read(whole.substr(0, length));
+        } catch (const Error& error) {
+            EXPECT_EQ(error.exit_code(), 2) << length;
+        }
+    }
 }
 
 TEST_F(SynthRecipes, OneToFourFluorophores) {
