@@ -43,5 +43,6 @@ void add_info_command(CLI::App& program, CommandContext& context);
 void add_devices_command(CLI::App& program, CommandContext& context);
 void add_convert_command(CLI::App& program, CommandContext& context);
 void add_compare_command(CLI::App& program, CommandContext& context);
+void add_classify_command(CLI::App& program, CommandContext& context);
 
 } // namespace reradiant
