@@ -1,6 +1,7 @@
 #include "host/render/scene_tables.h"
 
 #include "host/error.h"
+#include "host/render/stack_optics.h"
 #include "kernels/features.h"
 
 #include <fmt/format.h>
@@ -25,7 +26,9 @@ SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, M
     SceneTables tables;
     if (keep_all)
         tables.features = RenderFeatures::all();
-    tables.features.lobes = std::max(tables.features.lobes, deeper_lobe_count(scene));
+    for (const Material& material : scene.materials)
+        tables.features.lobes = std::max(
+            tables.features.lobes, deeper_lobe_count(material, chosen_model(material, model)));
     tables.features.chunks = plan.padded_lanes() / WIDTH;
     tables.features.film_chunks = tables.features.chunks;
     tables.camera = camera_record(scene.camera, scene.film);
