@@ -96,13 +96,14 @@ typedef struct {
     shared_uint octaves;
     shared_float tilt; ///< tangent of the standard deviation of the normals' tilt
     shared_float sharpness;
-    shared_uint image; ///< offset of its texels in the tables
+    shared_float share; ///< of voronoi cells whose value is 1, the others' is 0; 0: uniform values
+    shared_uint image;  ///< offset of its texels in the tables
     shared_uint width, height;
     shared_uint is_normal_map;
     shared_uint levels;
     shared_uint seed;
 } TextureRecord;
-ASSERT_SIZE(TextureRecord, 48);
+ASSERT_SIZE(TextureRecord, 52);
 
 /// What a shape refers to: a block of materials, one for every combination of levels.
 typedef struct {

@@ -104,7 +104,8 @@ DEVICE_FUNCTION TexturePoint texture_noise(TextureRecord texture, Vec3 p) {
 }
 
 /// Flakes: every point belongs to the nearest of points scattered one to a lattice cell (Worley
-/// 1996); a flake has one value, uniform in 0..1, and one tilt, normally distributed.
+/// 1996); a flake has one value, uniform in 0..1 or (share) 0 or 1, and one tilt, normally
+/// distributed.
 DEVICE_FUNCTION TexturePoint texture_voronoi(TextureRecord texture, Vec3 p) {
     const real fx = floor(p.x), fy = floor(p.y), fz = floor(p.z);
     const int deep = texture.space == TEXTURE_WORLD ? 1 : 0;
@@ -124,7 +125,8 @@ DEVICE_FUNCTION TexturePoint texture_voronoi(TextureRecord texture, Vec3 p) {
                 }
             }
     const Random4 own = random_4(owner, 1u, 0u, texture.seed);
-    TexturePoint point = texture_flat(own.a);
+    const real chosen = own.a < texture.share ? REAL(1.0) : REAL(0.0);
+    TexturePoint point = texture_flat(texture.share > 0.0f ? chosen : own.a);
     // Box and Muller 1958
     const real radius = texture.tilt * sqrt(REAL(-2.0) * log(REAL(1.0) - own.b));
     point.slope_x = radius * cos(REAL(2.0) * PI_REAL * own.c);

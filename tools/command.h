@@ -47,5 +47,6 @@ void add_merge_command(CLI::App& program, CommandContext& context);
 void add_synth_command(CLI::App& program, CommandContext& context);
 void add_colour_command(CLI::App& program, CommandContext& context);
 void add_fit_command(CLI::App& program, CommandContext& context);
+void add_classify_command(CLI::App& program, CommandContext& context);
 
 } // namespace reradiant

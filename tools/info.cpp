@@ -5,6 +5,7 @@
 #include "host/scene/scene.h"
 #include "host/spectral/matrix_io.h"
 #include "tools/command.h"
+#include "tools/describe_material.h"
 #include "tools/file_kind.h"
 
 #include <fmt/format.h>
@@ -90,21 +91,8 @@ Json describe_spectrum(const fs::path& file) {
             {"highest", spectrum.maximum(from, to)}};
 }
 
-Json describe_material(const Material& material) {
-    return {{"kind", "material"},
-            {"name", material.name},
-            {"model", model_name(material.model)},
-            {"layers", material.stack.layers.size()},
-            {"smooth", material.stack.is_smooth()},
-            {"absorbs", material.stack.absorbs()},
-            {"fluorescent", material.substrate.is_fluorescent()}};
-}
-
 Json describe_scene(const fs::path& file) {
     const Scene scene = load_scene(file);
-    Json materials = Json::array();
-    for (const Material& material : scene.materials)
-        materials.push_back(describe_material(material));
     Json result = {{"kind", "scene"},
                    {"width", scene.film.width},
                    {"height", scene.film.height},
@@ -112,7 +100,8 @@ Json describe_scene(const fs::path& file) {
                    {"shapes", scene.shapes.size()},
                    {"max_depth", scene.integrator.max_depth},
                    {"hash", scene.hash},
-                   {"materials", materials}};
+                   {"textures", scene.textures.size()},
+                   {"materials", describe_surfaces(scene)}};
     if (scene.film.bands)
         result["bands"] = describe_grid(*scene.film.bands);
     return result;
@@ -122,8 +111,11 @@ Json describe(const fs::path& file) {
     switch (file_kind(file)) {
     case FileKind::Scene:
         return describe_scene(file);
-    case FileKind::Material:
-        return describe_material(load_material(file));
+    case FileKind::Material: {
+        Json result = {{"kind", "material"}};
+        result.update(describe_material(load_material(file)));
+        return result;
+    }
     case FileKind::Matrix:
         return describe_matrix(file);
     case FileKind::Spectrum:

@@ -5,6 +5,7 @@
 #include "host/scene/scene.h"
 #include "host/spectral/matrix_io.h"
 #include "tools/command.h"
+#include "tools/describe_material.h"
 #include "tools/file_kind.h"
 
 #include <fmt/format.h>
@@ -65,20 +66,6 @@ Json validate_spectrum(const fs::path& file) {
             {"highest", spectrum.maximum(from, to)}};
 }
 
-Json describe_material(const Material& material) {
-    Json result = {{"name", material.name},
-                   {"model", model_name(material.model)},
-                   {"layers", material.stack.layers.size()},
-                   {"fluorescent", material.substrate.is_fluorescent()}};
-    if (material.substrate.is_fluorescent()) {
-        const auto excitation = material.substrate.excitation_range_nm();
-        const auto emission = material.substrate.emission_range_nm();
-        result["excited"] = range_text(excitation[0], excitation[1]);
-        result["emits"] = range_text(emission[0], emission[1]);
-    }
-    return result;
-}
-
 Json validate_material(const fs::path& file) {
     Json result = {{"kind", "material"}};
     result.update(describe_material(load_material(file)));
@@ -97,8 +84,8 @@ Json validate_scene(const fs::path& file) {
                    {"hash", scene.hash}};
     if (scene.film.bands)
         result["bands"] = grid_text(*scene.film.bands);
-    for (const Material& material : scene.materials)
-        result["materials"].push_back(describe_material(material));
+    result["textures"] = scene.textures.size();
+    result["materials"] = describe_surfaces(scene);
     return result;
 }
 

@@ -35,6 +35,7 @@ TextureRecord texture_record(const Texture& texture, const Scene& scene,
     record.octaves = static_cast<std::uint32_t>(texture.octaves);
     record.tilt = static_cast<float>(std::tan(texture.tilt_deg * std::numbers::pi / 180.0));
     record.sharpness = static_cast<float>(texture.sharpness);
+    record.share = static_cast<float>(texture.share);
     record.is_normal_map = texture.is_normal_map ? 1u : 0u;
     record.levels = static_cast<std::uint32_t>(std::max(texture.levels, 2));
     record.seed = texture.seed;

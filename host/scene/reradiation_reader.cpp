@@ -1,5 +1,6 @@
 #include "host/scene/material_reader.h"
 #include "host/scene/spectrum_reader.h"
+#include "host/scene/textured_value.h"
 #include "host/spectral/matrix_io.h"
 
 #include <stdexcept>
@@ -43,7 +44,7 @@ Fluorophore read_fluorophore(const toml::table& table, const std::string& file, 
         read_spectrum_key(reader, "excitation", SpectrumLimits::fraction(), state);
     fluorophore.emission = read_spectrum_key(reader, "emission", SpectrumLimits::emission(), state);
     fluorophore.quantum_yield =
-        reader.number_or("quantum_yield", 1.0, NumberRange::within(0.0, 1.0));
+        read_number_key_or(reader, "quantum_yield", 1.0, NumberRange::within(0.0, 1.0), state);
     if (fluorophore.emission.is_zero_within(200.0, 1000.0))
         reader.fail("emission", "emission is zero from 200 to 1000 nm",
                     "give the band that the fluorophore emits");

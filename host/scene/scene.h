@@ -116,11 +116,12 @@ struct Texture {
     std::string name;
     TextureType type = TextureType::Noise;
     TextureSpace space = TextureSpace::World;
-    double size = 0.1;          ///< of a noise lattice cell, a flake, a square, an image tile
-    int octaves = 4;            ///< noise
-    double tilt_deg = 0;        ///< voronoi, noise: standard deviation of the normals' tilt
-    double sharpness = 1;       ///< noise: contrast about 0.5, 1 = as it is
-    int image = -1;             ///< index into Scene::images
+    double size = 0.1;    ///< of a noise lattice cell, a flake, a square, an image tile
+    int octaves = 4;      ///< noise
+    double tilt_deg = 0;  ///< voronoi, noise: standard deviation of the normals' tilt
+    double share = 0;     ///< voronoi: share of flakes with t = 1, the rest 0; 0: t is uniform
+    double sharpness = 1; ///< noise: contrast about 0.5, 1 = as it is
+    int image = -1;       ///< index into Scene::images
     bool is_normal_map = false; ///< image of tangent-space normals
     int levels = 8; ///< steps that continuous parameters are tabulated in; 2 for a checker
     unsigned seed = 0;

@@ -84,9 +84,6 @@ Shape read_shape(const toml::table& table, const std::string& file, std::size_t 
         own.insert(own.end(), {"type", "material"});
         return TableReader(table, file, fmt::format("{} ({})", name, type), own);
     };
-    if (type == "heightfield")
-        throw_input_error(position_of(file, table.find("type")->first.source()),
-                          "this version has no heightfields", "give a mesh (PLY, OBJ)");
     Shape shape;
     const auto finish = [&](const TableReader& reader, auto geometry) {
         shape.geometry = std::move(geometry);
@@ -104,6 +101,10 @@ Shape read_shape(const toml::table& table, const std::string& file, std::size_t 
     if (type == "disk") {
         const TableReader reader = keys({"center", "normal", "radius"});
         return finish(reader, read_disk(reader));
+    }
+    if (type == "heightfield") {
+        const TableReader reader = keys({"file", "center", "edge_u", "edge_v", "height"});
+        return finish(reader, read_heightfield(reader, state));
     }
     const TableReader reader = keys({"file"});
     return finish(reader, read_mesh_key(reader, state));

@@ -18,6 +18,7 @@ const std::vector<std::string> FORMS{
 const NumberRange ANY_VALUE = NumberRange::within(-1e18, 1e18);
 const NumberRange SCALE = NumberRange::within(0.0, 1e18);
 const NumberRange WAVELENGTH = NumberRange::within(1.0, 1e5);
+constexpr double MAX_RGB = 1e9;
 constexpr double CHECKED_FROM_NM = 200.0, CHECKED_TO_NM = 1000.0;
 constexpr std::size_t MAX_TERMS = 1000;
 
@@ -93,11 +94,14 @@ Spectrum read_blackbody(const TableReader& reader) {
     return shape.scaled(reader.number_or("scale", 1.0, SCALE) / xyz_of(shape)[1]);
 }
 
+/// Absorptions exceed 1: such an rgb is a multiple of the reflectance that has its hue. Where a
+/// fraction is asked for the limits of the key refuse it.
 Spectrum read_rgb(const TableReader& reader) {
     const auto rgb =
         numbers_at(reader.required("rgb"), reader.file(), reader.position_of_key("rgb"), "rgb", 3,
-                   NumberRange::within(0.0, 1.0));
-    return reflectance_from_rgb({rgb[0], rgb[1], rgb[2]});
+                   NumberRange::within(0.0, MAX_RGB));
+    const double scale = std::max(1.0, *std::max_element(rgb.begin(), rgb.end()));
+    return reflectance_from_rgb({rgb[0] / scale, rgb[1] / scale, rgb[2] / scale}).scaled(scale);
 }
 
 Spectrum read_form(const TableReader& reader, const std::string& form, LoadState& state) {

@@ -1,4 +1,5 @@
 #include "host/scene/material_reader.h"
+#include "host/scene/pigment_reader.h"
 #include "host/scene/spectrum_reader.h"
 #include "host/scene/stack_reader.h"
 #include "host/scene/textured_value.h"
@@ -35,8 +36,12 @@ bool read_reflectance_image(const TableReader& reader, Substrate& substrate, Loa
     return true;
 }
 
-/// `reflectance` or `reradiation` of a diffuse substrate.
+/// `reflectance`, `reradiation` or pigments of a diffuse substrate.
 void read_diffuse_colour(const TableReader& reader, Substrate& substrate, LoadState& state) {
+    if (has_pigments(reader)) {
+        read_pigments(reader, substrate, state);
+        return;
+    }
     if (reader.has("reflectance") && reader.has("reradiation"))
         reader.fail("reflectance", "both reflectance and reradiation are given",
                     "a matrix holds its reflectance on the diagonal, fluorophores take it as "
@@ -60,18 +65,23 @@ Substrate read_substrate(const TableReader& material, LoadState& state) {
         own.push_back("type");
         return material.table("substrate", own);
     };
+    const auto diffuse_keys = [&](std::vector<std::string> own) {
+        own.insert(own.end(), pigment_keys().begin(), pigment_keys().end());
+        own.insert(own.end(), {"reflectance", "reradiation"});
+        return keys(own);
+    };
     Substrate substrate;
     if (type == "conductor") {
         substrate.type = SubstrateType::Conductor;
         substrate.conductor = read_conductor(keys(conductor_keys()), state);
     } else if (type == "oren-nayar") {
-        const TableReader reader = keys({"reflectance", "reradiation", "sigma"});
+        const TableReader reader = diffuse_keys({"sigma"});
         substrate.type = SubstrateType::OrenNayar;
         substrate.sigma = read_number_key(reader, "sigma",
                                           NumberRange::within(0.0, 0.5 * std::numbers::pi), state);
         read_diffuse_colour(reader, substrate, state);
     } else {
-        read_diffuse_colour(keys({"reflectance", "reradiation"}), substrate, state);
+        read_diffuse_colour(diffuse_keys({}), substrate, state);
     }
     return substrate;
 }

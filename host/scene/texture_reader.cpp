@@ -36,7 +36,7 @@ Texture read_texture(const toml::table& table, const std::string& file, std::siz
     if (type == "noise")
         keys.insert(keys.end(), {"seed", "tilt_deg", "octaves", "sharpness"});
     if (type == "voronoi")
-        keys.insert(keys.end(), {"seed", "tilt_deg"});
+        keys.insert(keys.end(), {"seed", "tilt_deg", "share"});
     if (type == "image")
         keys.insert(keys.end(), {"file", "normal_map", "linear"});
     const TableReader reader(table, file, fmt::format("{} ({})", name, type), keys);
@@ -53,11 +53,13 @@ Texture read_texture(const toml::table& table, const std::string& file, std::siz
                                                                         : TextureSpace::World;
     texture.size = reader.number_or("size", is_image ? 1.0 : texture.size,
                                     {.low = 1e-9, .high = MAX_COORDINATE});
-    texture.levels = reader.integer_or(
-        "levels", texture.type == TextureType::Checker ? 2 : texture.levels, 2, MAX_LEVELS);
     const auto known = [&](const char* key) {
         return std::find(keys.begin(), keys.end(), key) != keys.end() && reader.has(key);
     };
+    if (known("share"))
+        texture.share = reader.number("share", NumberRange::between(0.0, 1.0));
+    const bool is_binary = texture.type == TextureType::Checker || texture.share > 0.0;
+    texture.levels = reader.integer_or("levels", is_binary ? 2 : texture.levels, 2, MAX_LEVELS);
     if (known("seed"))
         texture.seed = static_cast<unsigned>(reader.integer("seed", 0, 0x7fffffff));
     if (known("tilt_deg"))

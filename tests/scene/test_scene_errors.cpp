@@ -108,8 +108,6 @@ const BadScene BAD_SCENES[] = {
     {"MissingMatrix", "reflectance = 0.5", "reradiation = { file = \"none.csv\" }", 14, 17,
      "cannot open \"none.csv\""},
     {"FolderForFile", "radiance = 1", "radiance = { file = \".\" }", 9, 14, "cannot open"},
-    // What this version does not have.
-    {"Heightfield", "type = \"sphere\"", "type = \"heightfield\"", 16, 1, "no heightfields"},
     // Presets.
     {"UnknownPreset", "[material.substrate]\ntype = \"lambert\"\nreflectance = 0.5",
      "preset = \"none\"", 12, 1, "there are: fluorescent-orange-bare"},

@@ -122,7 +122,7 @@ TEST_F(SpectrumForms, UnknownFormsAndValuesAreRefused) {
     EXPECT_EQ(error_column("{ blackbody_kelvin = 0 }", "at least 500"), 14);
     EXPECT_EQ(error_column("{ line_nm = 405, width_nm = 0 }", "at least 0.001"), 29);
     EXPECT_EQ(error_column("{ gaussian_nm = 405 }", "has no \"sigma_nm\""), 12);
-    EXPECT_EQ(error_column("{ rgb = [0.5, 2, 0.5] }", "rgb[1] is 2"), 26);
+    EXPECT_EQ(error_column("{ rgb = [0.5, -2, 0.5] }", "rgb[1] is -2"), 26);
     EXPECT_EQ(error_column("{ rgb = [0.5, 0.5] }", "give 3"), 14);
     EXPECT_EQ(error_column("[]", "sum of 0 spectra"), 1);
     EXPECT_EQ(error_column("[1, true]", "radiance[1] is a boolean"), 16);
