@@ -36,6 +36,7 @@ public:
     }
 
     void append() {
+        record_.walk = NO_INDEX;
         record_.spectral = spectral_ ? 1u : 0u;
         append_layers();
         append_lobes();

@@ -1,6 +1,6 @@
 #include "host/render/scene_tables.h"
 
-#include "host/error.h"
+#include "host/render/walk_tables.h"
 #include "kernels/features.h"
 
 #include <fmt/format.h>
@@ -9,12 +9,10 @@ namespace reradiant {
 
 namespace {
 
-/// The model that renders a material: `auto` takes adding, which is exact for diffuse substrates.
+/// The model that renders a material: `auto` takes adding, which is exact for diffuse substrates;
+/// the walk is slow and has to be asked for.
 Model chosen_model(const Material& material, Model requested) {
     const Model model = requested == Model::Auto ? material.model : requested;
-    if (model == Model::Walk)
-        throw_input_error({}, "the model 'walk' is not part of this version's renderer",
-                          "use adding or weidlich-wilkie");
     return model == Model::Auto ? Model::Adding : model;
 }
 
@@ -34,7 +32,10 @@ SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, M
         const Model chosen = chosen_model(material, model);
         tables.notes.push_back(
             fmt::format("material '{}': model {}", material.name, model_name(chosen)));
-        append_material(material, chosen, plan, tables.features.lobes, tables);
+        if (chosen == Model::Walk)
+            append_walk_material(material, plan, scene.file.string(), tables);
+        else
+            append_material(material, chosen, plan, tables.features.lobes, tables);
     }
     append_surfaces(scene, tables);
     append_lights(scene, plan, tables);
