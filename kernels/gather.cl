@@ -83,14 +83,44 @@ void model_a_ways(const GatherContext* context, Vec3 wi, Vec3 wo, float16* way_i
     }
 }
 
+#if FEATURE_DEEPER_LOBES
+/// What the tables add to a deeper lobe of model A in one lane.
+float model_a_tabulated_lane(const GatherContext* context, LobeRecord lobe, LayerFacet facet,
+                             uint lane) {
+#if FEATURE_SCATTERING_SLABS
+    if (lobe.slab != NO_INDEX) {
+        __global const float* slab = context->tables + lobe.slab + context->phase * LANES + lane;
+        return -slab[context->phases * LANES] *
+               expm1(-slab[0] * (1.0f / facet.wi.z + 1.0f / facet.wo.z));
+    }
+#endif
+#if FEATURE_TABULATED_REFLECTANCE
+    const uint offset = context->layers[lobe.layer].reflectance;
+    if (offset != NO_INDEX) {
+        const TableStencil s = table_stencil(facet.cos_h);
+        __global const float* rows = context->tables + offset +
+                                     ((size_t)context->phase * TABLE_NODES + s.node) * LANES + lane;
+        return s.w0 * rows[0] + s.w1 * rows[LANES] + s.w2 * rows[2 * LANES] +
+               s.w3 * rows[3 * LANES];
+    }
+#endif
+    return 1.0f;
+}
+
 /// A deeper lobe of model A for 16 lanes.
-float16 model_a_lobe(const GatherContext* context, uint layer, Vec3 wi, Vec3 wo, uint chunk) {
+float16 model_a_lobe(const GatherContext* context, LobeRecord lobe, Vec3 wi, Vec3 wo, uint chunk) {
     float16 result;
-    for (uint i = 0u; i < WIDTH; ++i)
-        ((float*)&result)[i] = layer_stack_nested_lobe(
-            context->layers, layer, lane_etas(context, chunk * WIDTH + i), wi, wo);
+    for (uint i = 0u; i < WIDTH; ++i) {
+        const uint lane = chunk * WIDTH + i;
+        __global const float* etas = lane_etas(context, lane);
+        const LayerFacet facet = layer_stack_facet(context->layers, lobe.layer, etas, wi, wo);
+        const float value = layer_stack_nested_lobe(context->layers, lobe, etas, facet);
+        ((float*)&result)[i] =
+            value > 0.0f ? value * model_a_tabulated_lane(context, lobe, facet, lane) : 0.0f;
+    }
     return result;
 }
+#endif
 #else
 #define FEATURE_MODEL_A_PER_LANE 0
 #endif
@@ -118,32 +148,45 @@ float16 top_reflectance(const GatherContext* context, Vec3 wi, Vec3 wo, uint chu
 }
 #endif
 
-#if FEATURE_DEEPER_LOBES
-/// Lanes of a deeper lobe beyond its scalar value and its amplitudes.
-float16 lobe_lanes(const GatherContext* context, uint l, Vec3 wi, Vec3 wo, uint chunk) {
-    const LobeRecord lobe = context->lobes[l];
+#if FEATURE_DEEPER_LOBES && FEATURE_WEIDLICH_WILKIE &&                                             \
+    (FEATURE_SCATTERING_SLABS || FEATURE_TABULATED_REFLECTANCE)
+#define FEATURE_MODEL_A_TABULATED 1
+
+/// What the tables add to a deeper lobe of model A for 16 lanes.
+float16 model_a_tabulated(const GatherContext* context, LobeRecord lobe, Vec3 wi, Vec3 wo,
+                          uint chunk) {
+    const LayerFacet facet = layer_stack_facet(context->layers, lobe.layer, 0, wi, wo);
 #if FEATURE_SCATTERING_SLABS
     if (lobe.slab != NO_INDEX) {
-        const LayerStackView stack = {context->material, context->layers, context->lobes, 0};
-        const LayerFacet inside = layer_stack_inside(stack, lobe, wi, wo);
         __global const float* slab = context->tables + lobe.slab + context->phase * LANES;
         const float16 depth = vload16(chunk, slab);
         const float16 albedo = vload16(chunk, slab + (size_t)context->phases * LANES);
-        return -albedo * expm1(-depth * (1.0f / inside.wi.z + 1.0f / inside.wo.z));
+        return -albedo * expm1(-depth * (1.0f / facet.wi.z + 1.0f / facet.wo.z));
     }
 #endif
-    float16 lanes = (float16)(1.0f);
+#if FEATURE_TABULATED_REFLECTANCE
+    if (context->layers[lobe.layer].reflectance != NO_INDEX)
+        return facet_reflectance(context, context->layers[lobe.layer].reflectance, facet.cos_h,
+                                 chunk);
+#endif
+    return (float16)(1.0f);
+}
+#else
+#define FEATURE_MODEL_A_TABULATED 0
+#endif
+
+#if FEATURE_DEEPER_LOBES
+/// Lanes of a deeper lobe beyond its scalar value and its amplitudes.
+float16 lobe_lanes(const GatherContext* context, uint l, Vec3 wi, Vec3 wo, uint chunk) {
 #if FEATURE_MODEL_A_PER_LANE
     if (context->material.weidlich_wilkie == MODEL_A_PER_LANE)
-        lanes = model_a_lobe(context, lobe.layer, wi, wo, chunk);
+        return model_a_lobe(context, context->lobes[l], wi, wo, chunk);
 #endif
-#if FEATURE_TABULATED_REFLECTANCE && FEATURE_WEIDLICH_WILKIE
-    if (context->layers[lobe.layer].reflectance != NO_INDEX)
-        lanes *= facet_reflectance(context, context->layers[lobe.layer].reflectance,
-                                   layer_stack_facet(context->layers, lobe.layer, 0, wi, wo).cos_h,
-                                   chunk);
+#if FEATURE_MODEL_A_TABULATED
+    if (context->material.weidlich_wilkie == MODEL_A)
+        return model_a_tabulated(context, context->lobes[l], wi, wo, chunk);
 #endif
-    return lanes;
+    return (float16)(1.0f);
 }
 #endif
 
@@ -173,9 +216,9 @@ void gather_direction(const GatherContext* context, DirectionRecord d, Vec3 wo, 
         if (d.top > 0.0f)
             specular += d.top * top_reflectance(context, wi, wo, c);
 #endif
-#if FEATURE_ROUGH || FEATURE_DEEPER_LOBES
-        if (m.residual != NO_INDEX && d.diffuse > 0.0f)
-            specular += d.diffuse * stack_lookup(context, m.residual, si, c) *
+#if FEATURE_ROUGH || FEATURE_DEEPER_LOBES || FEATURE_SCATTERING_SLABS
+        if (m.residual != NO_INDEX && d.residual > 0.0f)
+            specular += d.residual * stack_lookup(context, m.residual, si, c) *
                         stack_lookup(context, m.residual, so, c);
 #endif
 #if FEATURE_DEEPER_LOBES
@@ -191,9 +234,17 @@ void gather_direction(const GatherContext* context, DirectionRecord d, Vec3 wo, 
 }
 
 #if FEATURE_REFLECTANCE_IMAGE
-/// A reflectance rho coloured by an image: scale * rho / (1 - r rho) per lane.
-void coloured_substrate(const GatherContext* context, const float16* down, float16* emitted) {
+/// A reflectance rho coloured by an image: scale * rho / (1 - r rho) per lane, and what met an
+/// Oren-Nayar substrate once.
+void coloured_substrate(const GatherContext* context, const float16* down, const float16* first,
+                        float16* emitted) {
     const MaterialRecord m = context->material;
+    float mean = 1.0f;
+#if FEATURE_OREN_NAYAR
+    const int has_first = m.first_diagonal != NO_INDEX;
+    if (has_first)
+        mean = oren_nayar_mean_albedo(m.sigma);
+#endif
     const size_t size = (size_t)context->phases * LANES;
     __global const float* scale = context->tables + m.diagonal + context->phase * LANES;
     __global const float* r = context->tables + m.image_reflectance + context->phase * LANES;
@@ -201,7 +252,11 @@ void coloured_substrate(const GatherContext* context, const float16* down, float
         float16 rho = (float16)(0.0f);
         for (uint k = 0u; k < 3u; ++k)
             rho += context->colour[3u + k] * vload16(c, r + (k + 1u) * size);
-        emitted[c] = down[c] * vload16(c, scale) * rho / (1.0f - vload16(c, r) * rho);
+        emitted[c] = mean * down[c] * vload16(c, scale) * rho / (1.0f - vload16(c, r) * rho);
+#if FEATURE_OREN_NAYAR
+        if (has_first)
+            emitted[c] += first[c] * vload16(c, scale) * rho;
+#endif
     }
 }
 #endif
@@ -234,7 +289,7 @@ void substrate(const GatherContext* context, const float16* down, const float16*
         emitted[c] = (float16)(0.0f);
 #if FEATURE_REFLECTANCE_IMAGE
     if (m.reflectance_image != NO_INDEX) {
-        coloured_substrate(context, down, emitted);
+        coloured_substrate(context, down, first, emitted);
         return;
     }
 #endif
@@ -347,12 +402,12 @@ float16 walk_slab_lanes(const GatherContext* context, WalkPartRecord part, float
     return passed;
 }
 
-/// L = M L.
+/// L = M L; the material's operator is M / pi.
 void walk_substrate(const GatherContext* context, float16* radiance) {
     float16 emitted[CHUNKS];
     substrate(context, radiance, radiance, emitted);
     for (uint c = 0u; c < CHUNKS; ++c)
-        radiance[c] = emitted[c];
+        radiance[c] = PI_REAL * emitted[c];
 }
 
 /// What one event takes from the lanes of `light` or of the path.

@@ -130,9 +130,9 @@ typedef struct {
     real way_in, way_out;
 } LayerDescent;
 
-/// One interface of model A between two directions just above it (DESIGN A; Weidlich and Wilkie
-/// 2007, eq. 3-5); both are refracted into the medium below at the macroscopic normal. Nothing
-/// passes when one of them is totally reflected.
+/// One part of model A between two directions just above it (DESIGN A; Weidlich and Wilkie 2007,
+/// eq. 3-5); both are refracted into the medium below at the macroscopic normal. Nothing passes
+/// when one of them is totally reflected.
 DEVICE_FUNCTION void layer_stack_cross(LayerRecord layer, real eta, LayerDescent* d) {
     real t12, t;
     if (layer.coverage > 0.0f) { // a sheet of flakes
@@ -141,7 +141,7 @@ DEVICE_FUNCTION void layer_stack_cross(LayerRecord layer, real eta, LayerDescent
         return;
     }
     if (layer.reflectance != NO_INDEX) {
-        t12 = t = REAL(1.0); // in the tables, they depend on wavelength
+        t12 = t = REAL(1.0); // a film: in the tables, by each direction and wavelength
     } else if (layer.alpha > 0.0f) {
         const Vec3 h = vec3_normalise(vec3_add(d->wi, d->wo));
         t12 = REAL(1.0) - fresnel_dielectric(fmax(vec3_dot(d->wi, h), REAL(0.0)), eta);
@@ -160,7 +160,7 @@ DEVICE_FUNCTION void layer_stack_cross(LayerRecord layer, real eta, LayerDescent
     d->wo = vec3(d->wo.x / eta, d->wo.y / eta, cos_o);
 }
 
-/// Down the first `count` interfaces. The IOR ratios are those of the records, or, with
+/// Down the first `count` parts. The IOR ratios are those of the records, or, with
 /// `lane_etas` not null, lane_etas[layer.eta_lanes].
 DEVICE_FUNCTION LayerDescent layer_stack_descend(GLOBAL_CONST LayerRecord* layers, uint count,
                                                  GLOBAL_CONST shared_float* lane_etas, Vec3 wi,
@@ -196,21 +196,17 @@ DEVICE_FUNCTION LayerFacet layer_stack_facet(GLOBAL_CONST LayerRecord* layers, u
     return facet;
 }
 
-/// Value of the lobe of one part under model A, seen through those above (absorption not included,
-/// nor what is tabulated of its reflectance). 1/sr, no cosine.
-DEVICE_FUNCTION real layer_stack_nested_lobe(GLOBAL_CONST LayerRecord* layers, uint index,
-                                             GLOBAL_CONST shared_float* lane_etas, Vec3 wi,
-                                             Vec3 wo) {
-    const LayerRecord layer = layers[index];
-    const LayerFacet facet = layer_stack_facet(layers, index, lane_etas, wi, wo);
+/// Value of a rough part's lobe under model A between the directions just above it, seen through
+/// the parts above (absorption not included, nor what is tabulated of its reflectance). 1/sr, no
+/// cosine.
+DEVICE_FUNCTION real layer_stack_part_lobe(LayerRecord layer, real eta, LayerFacet facet) {
+    real reflectance = REAL(1.0);
     if (!(facet.through > REAL(0.0)))
         return REAL(0.0);
-    real reflectance = REAL(1.0);
     if (layer.coverage > 0.0f)
         reflectance = layer.coverage;
     else if (layer.reflectance == NO_INDEX)
-        reflectance =
-            fresnel_dielectric(facet.cos_h, lane_etas ? lane_etas[layer.eta_lanes] : layer.eta);
+        reflectance = fresnel_dielectric(facet.cos_h, eta);
     return facet.through * reflectance *
            microfacet_reflection((int)layer.distribution, layer.alpha, facet.wi, facet.wo);
 }
@@ -226,43 +222,24 @@ DEVICE_FUNCTION real layer_stack_phase(real g, real cos_deflection) {
 }
 #endif
 
-#if FEATURE_SCATTERING_SLABS
-/// Directions inside a scattering slab for two directions in air, and what the parts above let
-/// through. Without model A's factors (under `adding`) the tables hold these.
-DEVICE_FUNCTION LayerFacet layer_stack_inside(LayerStackView stack, LobeRecord lobe, Vec3 wi,
-                                              Vec3 wo) {
-    LayerFacet inside;
-    inside.through = REAL(1.0);
 #if FEATURE_WEIDLICH_WILKIE
-    if (stack.record.weidlich_wilkie) {
-        inside = layer_stack_facet(stack.layers, lobe.layer, 0, wi, wo);
-        return inside;
+/// Value of a deeper lobe under model A at what layer_stack_facet says of its part. A slab's is
+/// single scattering (Hanrahan and Krueger 1993, eq. 5): through p / (cos_i + cos_o), to be
+/// multiplied per lane by albedo (1 - exp(-tau (1 / cos_i + 1 / cos_o))). 1/sr, no cosine.
+DEVICE_FUNCTION real layer_stack_nested_lobe(GLOBAL_CONST LayerRecord* layers, LobeRecord lobe,
+                                             GLOBAL_CONST shared_float* lane_etas,
+                                             LayerFacet facet) {
+#if FEATURE_SCATTERING_SLABS
+    if (lobe.slab != NO_INDEX) {
+        if (!(facet.through > REAL(0.0)))
+            return REAL(0.0);
+        // light comes along -wi and leaves along wo
+        return facet.through * layer_stack_phase(lobe.alpha, -vec3_dot(facet.wi, facet.wo)) /
+               (facet.wi.z + facet.wo.z);
     }
 #endif
-    inside.wi = wi;
-    inside.wo = wo;
-    for (uint k = 0u; k < lobe.layer; ++k) {
-        const real eta = stack.layers[k].coverage > 0.0f ? REAL(1.0) : stack.layers[k].eta;
-        inside.wi =
-            vec3(inside.wi.x / eta, inside.wi.y / eta, fresnel_cos_transmitted(inside.wi.z, eta));
-        inside.wo =
-            vec3(inside.wo.x / eta, inside.wo.y / eta, fresnel_cos_transmitted(inside.wo.z, eta));
-        if (!(inside.wi.z > REAL(0.0)) || !(inside.wo.z > REAL(0.0)))
-            inside.through = REAL(0.0);
-    }
-    return inside;
-}
-
-/// Single scattering in a slab (Hanrahan and Krueger 1993, eq. 5): through p / (cos_i + cos_o), to
-/// be multiplied per lane by albedo (1 - exp(-tau (1 / cos_i + 1 / cos_o))). 1/sr, no cosine.
-DEVICE_FUNCTION real layer_stack_slab_lobe(LayerStackView stack, uint lobe, Vec3 wi, Vec3 wo) {
-    const LayerFacet inside = layer_stack_inside(stack, stack.lobes[lobe], wi, wo);
-    if (!(inside.through > REAL(0.0)))
-        return REAL(0.0);
-    // light comes along -wi and leaves along wo
-    return inside.through *
-           layer_stack_phase(stack.lobes[lobe].alpha, -vec3_dot(inside.wi, inside.wo)) /
-           (inside.wi.z + inside.wo.z);
+    const LayerRecord layer = layers[lobe.layer];
+    return layer_stack_part_lobe(layer, lane_etas ? lane_etas[layer.eta_lanes] : layer.eta, facet);
 }
 #endif
 
@@ -270,15 +247,13 @@ DEVICE_FUNCTION real layer_stack_slab_lobe(LayerStackView stack, uint lobe, Vec3
 /// evaluates per lane). 1/sr, no cosine.
 #if FEATURE_DEEPER_LOBES
 DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi, Vec3 wo) {
-#if FEATURE_SCATTERING_SLABS
-    if (stack.lobes[lobe].slab != NO_INDEX)
-        return layer_stack_slab_lobe(stack, lobe, wi, wo);
-#endif
 #if FEATURE_WEIDLICH_WILKIE
     if (stack.record.weidlich_wilkie == MODEL_A_PER_LANE)
         return REAL(1.0);
     if (stack.record.weidlich_wilkie == MODEL_A)
-        return layer_stack_nested_lobe(stack.layers, stack.lobes[lobe].layer, 0, wi, wo);
+        return layer_stack_nested_lobe(
+            stack.layers, stack.lobes[lobe], 0,
+            layer_stack_facet(stack.layers, stack.lobes[lobe].layer, 0, wi, wo));
 #endif
     return microfacet_reflection((int)stack.lobes[lobe].distribution, stack.lobes[lobe].alpha, wi,
                                  wo);
@@ -297,29 +272,49 @@ DEVICE_FUNCTION real layer_stack_top(LayerStackView stack, Vec3 wi, Vec3 wo) {
 }
 #endif
 
+/// Scalar factors of the diffuse part: of its operator, and of that for light that met an
+/// Oren-Nayar substrate once.
+typedef struct {
+    real diffuse, first;
+} LayerDiffuse;
+
 #if FEATURE_OREN_NAYAR
-/// pi f / rho of an Oren-Nayar substrate for two directions in air, refracted down to it.
-DEVICE_FUNCTION real layer_stack_first_bounce(LayerStackView stack, Vec3 wi, Vec3 wo) {
-    const real n = stack.record.lowest_ior;
+/// For two directions in air, refracted down to the substrate (by the IOR at the reference
+/// wavelength): where its first bounce stands apart, the weights `rest` and `first` of
+/// host/layers/oren_nayar_substrate.h; else pi f / rho.
+DEVICE_FUNCTION LayerDiffuse layer_stack_oren_nayar(MaterialRecord record, Vec3 wi, Vec3 wo) {
+    const real n = record.lowest_ior;
     const Vec3 below_i = vec3(wi.x / n, wi.y / n, fresnel_cos_transmitted(wi.z, n));
     const Vec3 below_o = vec3(wo.x / n, wo.y / n, fresnel_cos_transmitted(wo.z, n));
-    return PI_REAL * oren_nayar_value(stack.record.sigma, below_i, below_o);
+    LayerDiffuse weights;
+    weights.first = REAL(0.0);
+    weights.diffuse = PI_REAL * oren_nayar_value(record.sigma, below_i, below_o);
+    if (record.first_diagonal != NO_INDEX) {
+        const real mean = oren_nayar_mean_albedo(record.sigma);
+        const real product =
+            oren_nayar_albedo(record.sigma, below_i.z) * oren_nayar_albedo(record.sigma, below_o.z);
+        weights.first = weights.diffuse - product / mean;
+        weights.diffuse = product / square(mean);
+    }
+    return weights;
 }
 #endif
 
-/// Scalar factor of the diffuse part: 1, or model A's interfaces (without absorption) where they
-/// do not depend on wavelength, and its Oren-Nayar substrate.
-DEVICE_FUNCTION real layer_stack_diffuse(LayerStackView stack, Vec3 wi, Vec3 wo) {
-    real factor = REAL(1.0);
+/// 1, or model A's interfaces (without absorption) where they do not depend on wavelength, and
+/// Oren-Nayar's shape.
+DEVICE_FUNCTION LayerDiffuse layer_stack_diffuse(LayerStackView stack, Vec3 wi, Vec3 wo) {
+    LayerDiffuse factor;
+    factor.diffuse = REAL(1.0);
+    factor.first = REAL(0.0);
 #if FEATURE_OREN_NAYAR
-    if (stack.record.sigma > 0.0f && stack.record.first_diagonal == NO_INDEX)
-        factor = layer_stack_first_bounce(stack, wi, wo);
+    if (stack.record.sigma > 0.0f)
+        factor = layer_stack_oren_nayar(stack.record, wi, wo);
 #endif
 #if FEATURE_WEIDLICH_WILKIE
     if (stack.record.weidlich_wilkie == MODEL_A) {
         const LayerDescent descent =
             layer_stack_descend(stack.layers, stack.record.layer_count, 0, wi, wo);
-        factor *= descent.way_in * descent.way_out;
+        factor.diffuse *= descent.way_in * descent.way_out;
     }
 #endif
     return factor;

@@ -135,7 +135,7 @@ SurfacePoint surface_point(const ShadeScene* scene, HitRecord hit, RayRecord ray
 }
 
 VertexRecord empty_vertex(void) {
-    const DirectionRecord nothing = {0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+    const DirectionRecord nothing = {0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
     VertexRecord vertex = {NO_INDEX, NO_INDEX, 0.0f, NO_INDEX, 0.0f,
                            0.0f,     1.0f,     0u,   nothing,  nothing};
     return vertex;
@@ -157,12 +157,10 @@ real emission_weight(LightRecord light, RayRecord ray, HitRecord hit, real bsdf_
 /// The scalar weights of all components in one direction; `scale` holds cos / pdf.
 DirectionRecord direction_weights(LayerStackView stack, Vec3 wi, Vec3 wo, real scale,
                                   __global float* lobe_weights) {
-    DirectionRecord d = {wi.x, wi.y, wi.z, 0.0f, 0.0f, 0.0f, 0.0f};
-    d.diffuse = scale * layer_stack_diffuse(stack, wi, wo);
-#if FEATURE_OREN_NAYAR
-    if (stack.record.first_diagonal != NO_INDEX)
-        d.first = scale * layer_stack_first_bounce(stack, wi, wo);
-#endif
+    DirectionRecord d = {wi.x, wi.y, wi.z, 0.0f, 0.0f, scale, 0.0f, 0.0f};
+    const LayerDiffuse factors = layer_stack_diffuse(stack, wi, wo);
+    d.diffuse = scale * factors.diffuse;
+    d.first = scale * factors.first;
 #if FEATURE_ROUGH
     if (stack.record.has_top_lobe)
         d.top = scale * layer_stack_top(stack, wi, wo);
@@ -252,9 +250,8 @@ RayRecord sample_direction(SurfacePoint point, LayerStackView stack, const Layer
         return inactive;
     *pdf = is_delta ? -1.0f : layer_stack_pdf(stack, choice, point.wo, wi);
     if (is_delta) {
-        const DirectionRecord mirror = {
-            wi.x, wi.y, wi.z, 0.0f, 0.0f, 1.0f / (choice->cumulative[CHOICE_DELTA] * survival),
-            0.0f};
+        DirectionRecord mirror = {wi.x, wi.y, wi.z, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+        mirror.delta = 1.0f / (choice->cumulative[CHOICE_DELTA] * survival);
         vertex->next = mirror;
 #if FEATURE_DEEPER_LOBES
         for (uint l = 0u; l < stack.record.lobe_count; ++l)

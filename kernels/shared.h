@@ -245,13 +245,14 @@ ASSERT_SIZE(PathState, 24);
 /// Weights of one of the two directions that a vertex gathers from. Each is a scalar times
 /// cos(theta_i) / pdf; the lanes' factors are applied in `gather`.
 typedef struct {
-    shared_float x, y, z; ///< direction, local frame
-    shared_float diffuse; ///< times T(o) B T(i), and the residual's product
-    shared_float top;     ///< times Fresnel (already inside unless it depends on wavelength)
-    shared_float delta;   ///< times the delta table
-    shared_float first;   ///< oren-nayar: times T(o) M T(i), light that met the substrate once
+    shared_float x, y, z;  ///< direction, local frame
+    shared_float diffuse;  ///< times T(o) B T(i)
+    shared_float first;    ///< oren-nayar: times T(o) M T(i), light that met the substrate once
+    shared_float residual; ///< times the residual's product
+    shared_float top;      ///< times Fresnel (already inside unless it depends on wavelength)
+    shared_float delta;    ///< times the delta table
 } DirectionRecord;
-ASSERT_SIZE(DirectionRecord, 28);
+ASSERT_SIZE(DirectionRecord, 32);
 
 /// What happened where a path met a surface (or a light, or the environment).
 typedef struct {
@@ -263,7 +264,7 @@ typedef struct {
     shared_uint has_next;             ///< the path goes on
     DirectionRecord next, towards_light;
 } VertexRecord;
-ASSERT_SIZE(VertexRecord, 88);
+ASSERT_SIZE(VertexRecord, 96);
 
 #ifndef __OPENCL_VERSION__
 } // namespace reradiant

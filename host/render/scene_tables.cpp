@@ -1,5 +1,6 @@
 #include "host/render/scene_tables.h"
 
+#include "host/render/stack_optics.h"
 #include "host/render/walk_tables.h"
 #include "kernels/features.h"
 
@@ -23,7 +24,10 @@ SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, M
     SceneTables tables;
     if (keep_all)
         tables.features = RenderFeatures::all();
-    tables.features.lobes = std::max(tables.features.lobes, deeper_lobe_count(scene));
+    for (const Material& material : scene.materials)
+        if (const Model chosen = chosen_model(material, model); chosen != Model::Walk)
+            tables.features.lobes =
+                std::max(tables.features.lobes, deeper_lobe_count(material, chosen));
     tables.features.chunks = plan.padded_lanes() / WIDTH;
     tables.features.film_chunks = tables.features.chunks;
     tables.camera = camera_record(scene.camera, scene.film);

@@ -28,11 +28,10 @@ struct SceneTables {
     std::vector<std::string> notes; ///< models chosen, factorisation errors
 };
 
-/// Appends the tables of one material; sets the feature bits it needs.
+/// Appends the tables of one material; sets the feature bits it needs. lobes: most deeper lobes of
+/// any material of the scene.
 void append_material(const Material& material, Model model, const WavelengthPlan& plan, int lobes,
                      SceneTables& tables);
-/// Most deeper rough lobes that any material's stack can have.
-int deeper_lobe_count(const Scene& scene);
 
 /// Appends surfaces, textures and the images of these; sets the feature bits they need.
 void append_surfaces(const Scene& scene, SceneTables& tables);

@@ -1,7 +1,10 @@
 #include "host/render/stack_optics.h"
 
-#include "host/layers/weidlich_wilkie.h"
-#include "kernels/fresnel.h"
+#include "host/render/stack_parts.h"
+#include "host/render/weidlich_wilkie_optics.h"
+#include "kernels/shared.h"
+
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,11 +30,25 @@ public:
     double amplitude(int lobe, double c) const override {
         return transport_->lobe_amplitude(lobe, c);
     }
-    double rough_share(double c) const override {
-        return std::max(0.0, transport_->specular_albedo(c) - transport_->specular_delta(c) -
-                                 transport_->residual(c));
+    /// By the squares of the amplitudes, adding up to what neither delta nor residual reflects.
+    std::vector<double> lobe_shares(double c) const override {
+        std::vector<double> shares{transport_->has_top_lobe() ? 1.0 : 0.0};
+        const auto lobes = static_cast<int>(deeper_lobes().size());
+        for (int l = 0; l < lobes; ++l)
+            shares.push_back(amplitude(l, c) * amplitude(l, c));
+        double sum = 0.0;
+        for (const double share : shares)
+            sum += share;
+        const double all =
+            std::max(0.0, transport_->specular_albedo(c) - transport_->specular_delta(c) -
+                              transport_->residual(c));
+        for (double& share : shares)
+            share *= sum > 0.0 ? all / sum : 0.0;
+        return shares;
     }
-    double internal_reflectance() const override { return transport_->internal_reflectance(); }
+    double internal_reflectance(double sigma) const override {
+        return transport_->internal_reflectance(sigma);
+    }
     double diffuse_scale() const override {
         return 1.0 / (pi * transport_->lowest_ior() * transport_->lowest_ior());
     }
@@ -44,82 +61,61 @@ private:
     double residual_scale_;
 };
 
-/// Model A. Under rough interfaces its Fresnel and geometry factors depend on both directions and
-/// are applied by the kernel (layer_stack.h); the tables then hold the absorption alone.
-class WeidlichWilkieOptics final : public StackOptics {
-public:
-    WeidlichWilkieOptics(StackValues stack, std::vector<int> lobe_layers)
-        : stack_(std::move(stack)), lobe_layers_(std::move(lobe_layers)) {
-        smooth_ = std::all_of(stack_.begin(), stack_.end(),
-                              [](const LayerValues& layer) { return layer.alpha == 0.0; });
-        for (const int layer : lobe_layers_) {
-            const LayerValues& values = stack_[static_cast<std::size_t>(layer)];
-            const double above = layer > 0 ? stack_[static_cast<std::size_t>(layer - 1)].ior : 1.0;
-            lobes_.push_back({values.distribution, std::min(1.0, above * values.alpha)});
-        }
+/// Lobes beneath the top one that adding makes at most: one for each rough interface and for each
+/// run of smooth ones beneath a rough one.
+int adding_lobe_count(const LayerStack& stack) {
+    int count = 0;
+    bool below_rough = false, in_run = false;
+    for (std::size_t k = 0; k < stack.layers.size(); ++k) {
+        const bool rough = stack.layers[k].alpha > 0.0;
+        if (k > 0 && (rough || (below_rough && !in_run)))
+            ++count;
+        below_rough = below_rough || rough;
+        in_run = below_rough && !rough;
     }
+    return count;
+}
 
-    double transmission(double c) const override {
-        if (!smooth_)
-            return absorbed(stack_.size(), c);
-        const kernels::Vec3 w = kernels::vec3(std::sqrt((1.0 - c) * (1.0 + c)), 0.0, c);
-        return c > 0.0 ? WeidlichWilkie::way_in(stack_, w, w) : 0.0;
-    }
-    double delta(double c) const override { return WeidlichWilkie::specular_delta(stack_, c); }
-    double residual(double) const override { return 0.0; }
-    double amplitude(int lobe, double c) const override {
-        return absorbed(static_cast<std::size_t>(lobe_layers_[static_cast<std::size_t>(lobe)]), c);
-    }
-    double rough_share(double c) const override {
-        return smooth_ ? 0.0 : kernels::fresnel_dielectric(c, stack_.front().ior);
-    }
-    double internal_reflectance() const override { return 0.0; }
-    double diffuse_scale() const override { return 1.0 / pi; }
-    const std::vector<AddingTransport::Lobe>& deeper_lobes() const override { return lobes_; }
-
-private:
-    /// Absorption of the first `count` slabs, one way.
-    double absorbed(std::size_t count, double c) const {
-        double depth = 0.0, ior = 1.0;
-        for (std::size_t k = 0; k < count; ++k) {
-            c = kernels::fresnel_cos_transmitted(c, stack_[k].ior / ior);
-            ior = stack_[k].ior;
-            if (stack_[k].tau > 0.0)
-                depth += stack_[k].tau / c;
-        }
-        return std::exp(-depth);
-    }
-
-    StackValues stack_;
-    std::vector<int> lobe_layers_;
-    std::vector<AddingTransport::Lobe> lobes_;
-    bool smooth_ = true;
-};
+/// Whether something that the tables by the angle hold depends on wavelength.
+bool depends_on_wavelength(const Material& material) {
+    const Conductor& metal = material.substrate.conductor;
+    return !material.stack.is_grey() ||
+           (material.substrate.type == SubstrateType::Conductor &&
+            !(metal.ior.is_constant() && metal.kappa.is_constant() && !metal.film));
+}
 
 } // namespace
 
-std::vector<int> deeper_lobe_layers(const LayerStack& stack) {
-    std::vector<int> layers;
-    bool below_rough = false;
-    for (std::size_t k = 0; k < stack.layers.size(); ++k) {
-        const bool rough = stack.layers[k].alpha > 0.0;
-        if (k > 0 && (rough || below_rough))
-            layers.push_back(static_cast<int>(k));
-        below_rough |= rough;
-    }
-    return layers;
+int deeper_lobe_count(const Material& material, Model model) {
+    return model == Model::WeidlichWilkie ? static_cast<int>(weidlich_wilkie_lobes(material).size())
+                                          : adding_lobe_count(material.stack);
 }
 
-std::unique_ptr<StackOptics> stack_optics(const LayerStack& stack, Model model,
+std::unique_ptr<StackOptics> stack_optics(const Material& material, Model model,
                                           double wavelength_nm) {
-    const StackValues values = stack_at(stack, wavelength_nm);
-    if (model != Model::WeidlichWilkie)
-        return std::make_unique<AddingOptics>(adding_transport(values));
-    std::vector<int> lobes = deeper_lobe_layers(stack);
-    std::erase_if(lobes, [&](int k) {
-        return stack.layers[static_cast<std::size_t>(k)].alpha == 0.0; // part of the delta
+    if (model == Model::WeidlichWilkie)
+        return weidlich_wilkie_optics(material, wavelength_nm);
+    return std::make_unique<AddingOptics>(
+        adding_transport(stack_at(material.stack, wavelength_nm)));
+}
+
+MaterialOptics::MaterialOptics(const Material& material, Model model, const WavelengthPlan& plan)
+    : spectral_(depends_on_wavelength(material)), lanes_(static_cast<int>(plan.lanes.size())) {
+    const int count = spectral_ ? plan.phases * lanes_ : 1;
+    optics_.resize(static_cast<std::size_t>(count));
+    tbb::parallel_for(0, count, [&](int i) {
+        const double wavelength =
+            spectral_ ? plan.wavelength_nm(i % lanes_, i / lanes_) : reference_nm;
+        optics_[static_cast<std::size_t>(i)] = stack_optics(material, model, wavelength);
     });
-    return std::make_unique<WeidlichWilkieOptics>(values, std::move(lobes));
+}
+
+bool MaterialOptics::is_ever_positive(double (StackOptics::*value)(double) const) const {
+    for (const auto& optics : optics_)
+        for (int node = 0; node < TABLE_NODES; ++node)
+            if ((optics.get()->*value)(node_cosine(node)) > 0.0)
+                return true;
+    return false;
 }
 
 } // namespace reradiant

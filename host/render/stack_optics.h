@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/layers/adding.h"
+#include "host/render/lane_tables.h"
 #include "host/scene/scene.h"
 
 #include <memory>
@@ -8,7 +9,11 @@
 
 namespace reradiant {
 
-/// A stack at one wavelength as the kernels' tables see it, for either closed model.
+/// Where spectra that a render takes at one wavelength are read.
+inline constexpr double reference_nm = 550.0;
+
+/// A stack (and its substrate where that is a conductor) at one wavelength as the kernels' tables
+/// see it, for either closed model.
 class StackOptics {
 public:
     virtual ~StackOptics() = default;
@@ -16,20 +21,43 @@ public:
     virtual double delta(double cos_theta) const = 0;        ///< weight of the mirror direction
     virtual double residual(double cos_theta) const = 0;     ///< over sqrt(pi * its average)
     virtual double amplitude(int lobe, double cos_theta) const = 0;
-    /// Share of the directional reflectance that the rough lobes carry (for choosing among them).
-    virtual double rough_share(double cos_theta) const = 0;
-    /// r of the substrate's interreflection; 0 for a model without.
-    virtual double internal_reflectance() const = 0;
+    /// About what each rough lobe reflects, the top one first (0 when there is none), then the
+    /// deeper ones. Only for choosing among them.
+    virtual std::vector<double> lobe_shares(double cos_theta) const = 0;
+    /// About what slabs reflect by lobes of their own; the cosine lobe samples them.
+    virtual double scattered_share(double /*cos_theta*/) const { return 0.0; }
+    /// r of the interreflection with an Oren-Nayar substrate of this sigma; 0 for a model without.
+    virtual double internal_reflectance(double sigma) const = 0;
     /// Factor of the substrate's operator: 1 / (pi n_k^2), or 1 / pi.
     virtual double diffuse_scale() const = 0;
+    /// Shapes of the deeper lobes in the air's half vector; fewer than a scene's may be.
     virtual const std::vector<AddingTransport::Lobe>& deeper_lobes() const = 0;
 };
 
-std::unique_ptr<StackOptics> stack_optics(const LayerStack& stack, Model model,
+std::unique_ptr<StackOptics> stack_optics(const Material& material, Model model,
                                           double wavelength_nm);
 
-/// Indices of the interfaces that make deeper rough lobes: all below the first rough interface,
-/// and that one too unless it is the top.
-std::vector<int> deeper_lobe_layers(const LayerStack& stack);
+/// The optics of a material at every phase and lane of a plan, or once where nothing about it
+/// depends on wavelength.
+class MaterialOptics {
+public:
+    MaterialOptics(const Material& material, Model model, const WavelengthPlan& plan);
+
+    bool is_spectral() const { return spectral_; }
+    const StackOptics& at(int phase, int lane) const {
+        return *optics_[spectral_ ? static_cast<std::size_t>(phase * lanes_ + lane) : 0];
+    }
+    const StackOptics& any() const { return *optics_.front(); }
+    /// Whether some value is above 0 at some node.
+    bool is_ever_positive(double (StackOptics::*value)(double) const) const;
+
+private:
+    bool spectral_;
+    int lanes_;
+    std::vector<std::unique_ptr<StackOptics>> optics_;
+};
+
+/// Number of deeper rough lobes that a material can have under a model.
+int deeper_lobe_count(const Material& material, Model model);
 
 } // namespace reradiant

@@ -74,10 +74,10 @@ SemiseparableMatrix factored_on_lanes(const SubstrateOnCells& on_cells, const Wa
     return matrix;
 }
 
-Eigen::MatrixXd dense_on_lanes(const SubstrateOnCells& on_cells, const WavelengthPlan& plan,
-                               const Eigen::VectorXd& diagonal) {
+/// What is off the diagonal.
+Eigen::MatrixXd dense_on_lanes(const SubstrateOnCells& on_cells, const WavelengthPlan& plan) {
     const auto lanes = static_cast<Eigen::Index>(plan.lanes.size());
-    Eigen::MatrixXd matrix = diagonal.asDiagonal();
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(lanes, lanes);
     for (Eigen::Index i = 0; i < lanes; ++i)
         for (Eigen::Index o = 0; o < lanes; ++o) {
             const Lane& from = plan.lanes[static_cast<std::size_t>(i)];
@@ -122,25 +122,27 @@ SubstrateOnCells substrate_on_cells(const Substrate& substrate, const Wavelength
 }
 
 LaneOperator lane_operator(const Substrate& substrate, const SubstrateOnCells& on_cells,
-                           const WavelengthPlan& plan, int phase, const Eigen::VectorXd& r,
-                           const Eigen::VectorXd& scale) {
-    const Eigen::VectorXd diagonal = lane_reflectance(substrate, on_cells, plan, phase);
+                           const WavelengthPlan& plan, int phase, double albedo,
+                           const Eigen::VectorXd& r, const Eigen::VectorXd& scale) {
+    const Eigen::VectorXd diagonal = albedo * lane_reflectance(substrate, on_cells, plan, phase);
     LaneOperator result;
     if (on_cells.fluorescence.size() == 0) {
         result.diagonal = scale.array() * diagonal.array() / (1.0 - r.array() * diagonal.array());
         return result;
     }
     if (on_cells.is_factored()) {
-        const SemiseparableMatrix effective =
-            effective_semiseparable(factored_on_lanes(on_cells, plan, diagonal), r);
+        SemiseparableMatrix matrix = factored_on_lanes(on_cells, plan, diagonal);
+        matrix.emission *= albedo;
+        const SemiseparableMatrix effective = effective_semiseparable(matrix, r);
         result.diagonal = scale.cwiseProduct(effective.diagonal);
         result.emission = scale.asDiagonal() * effective.emission;
         result.excitation = effective.excitation;
         return result;
     }
     // Under a line a column is in 1/nm; the solve works on irradiance alike.
-    result.dense =
-        scale.asDiagonal() * effective_matrix(dense_on_lanes(on_cells, plan, diagonal), r);
+    Eigen::MatrixXd matrix = albedo * dense_on_lanes(on_cells, plan);
+    matrix.diagonal() = diagonal;
+    result.dense = scale.asDiagonal() * effective_matrix(matrix, r);
     result.diagonal = result.dense.diagonal();
     result.dense.diagonal().setZero();
     return result;

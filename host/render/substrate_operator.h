@@ -25,9 +25,10 @@ struct LaneOperator {
     Eigen::VectorXd row_sums() const;
 };
 
-/// r: share sent back by the stack, scale: factor of each emission lane, both (lanes).
+/// scale * albedo M (I - diag(r) albedo M)^-1; r: share sent back by the stack, scale: factor of
+/// each emission lane, both (lanes); albedo: factor of the whole matrix M.
 LaneOperator lane_operator(const Substrate& substrate, const SubstrateOnCells& on_cells,
-                           const WavelengthPlan& plan, int phase, const Eigen::VectorXd& r,
-                           const Eigen::VectorXd& scale);
+                           const WavelengthPlan& plan, int phase, double albedo,
+                           const Eigen::VectorXd& r, const Eigen::VectorXd& scale);
 
 } // namespace reradiant

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "host/render/lane_tables.h"
+#include "host/render/stack_optics.h"
+#include "host/render/substrate_operator.h"
+
+namespace reradiant {
+
+/// Appends [node][components + 1]: the cumulative probabilities with which a direction is sampled
+/// from the mirror delta, the top lobe, `lobes` deeper ones (those that a material lacks stay
+/// empty) and the cosine lobe; then the albedo. By the share of each in what is reflected, mean
+/// over lanes. `substrate`: its operator at the middle phase.
+std::uint32_t append_choice(const MaterialOptics& optics, const LaneOperator& substrate, int lobes,
+                            LaneTables& lanes);
+
+} // namespace reradiant
