@@ -17,7 +17,7 @@ typedef struct {
     __global const LayerRecord* layers;
     __global const LobeRecord* lobes;
     __global const float* tables;
-    __global const float* colour; ///< of the vertex (VERTEX_COLOURS)
+    __global const float* colour;              ///< of the vertex (VERTEX_COLOURS)
     __global const WalkPartRecord* walk_parts; ///< of the material, where it is walked through
     uint phase;
     uint phases;
@@ -460,9 +460,9 @@ void gather_walk(const GatherContext* context, const VertexRecord* vertex, WalkV
     const float weight = vertex->has_next ? walk.weight : 0.0f;
     for (uint c = 0u; c < CHUNKS; ++c) {
         radiance[c] = weight > 0.0f ? weight * radiance[c] : (float16)(0.0f);
-        light[c] = lit ? emission(light_spectrum, context->colour, light_is_image,
-                                  context->phases, c)
-                       : (float16)(0.0f);
+        light[c] =
+            lit ? emission(light_spectrum, context->colour, light_is_image, context->phases, c)
+                : (float16)(0.0f);
     }
     const WalkReader reader = {chunks, walk.chunk, walk.count};
     replay_walk(context, reader, walk.reference, lit, light, radiance);

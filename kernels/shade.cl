@@ -367,8 +367,9 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
                     __global const LightRecord* lights, __global const float* tables,
                     __global const WalkPartRecord* walk_parts, __global WalkChunk* walk_chunks,
                     __global uint* walk_chunks_used, __global WalkVertexRecord* walk_vertices,
-                    EnvironmentRecord image, uint walk_capacity, uint path_count, uint capacity, uint depth,
-                    uint max_depth, uint min_depth, uint light_count, uint environment, uint seed) {
+                    EnvironmentRecord image, uint walk_capacity, uint path_count, uint capacity,
+                    uint depth, uint max_depth, uint min_depth, uint light_count, uint environment,
+                    uint seed) {
     const uint path = (uint)get_global_id(0);
     if (path >= path_count)
         return;
@@ -428,9 +429,8 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
         walk.writer = walk_writer(walk_chunks, walk_chunks_used, walk_capacity);
         walk.random = walk_random(state.pixel, state.sample,
                                   WALK_DIMENSION + depth * WALK_DIMENSIONS_PER_VERTEX, seed);
-        rays[path] =
-            walk_from_here(&scene, point, &walk, u_light, u.d, depth, min_depth, &vertex,
-                           walk_vertices + slot, &state, shadow_rays + slot, colour);
+        rays[path] = walk_from_here(&scene, point, &walk, u_light, u.d, depth, min_depth, &vertex,
+                                    walk_vertices + slot, &state, shadow_rays + slot, colour);
         vertices[slot] = vertex;
         paths[path] = state;
         return;

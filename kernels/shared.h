@@ -192,8 +192,8 @@ ASSERT_SIZE(MaterialRecord, 96);
 /// A part of a stack that is walked through: an interface with the slab beneath it, or, as the last
 /// one, the substrate (of which only alpha and what follows it up to `reflectance` is used).
 typedef struct {
-    shared_float eta, ior;    ///< IOR below over IOR above; IOR below
-    shared_float alpha;       ///< 0: smooth
+    shared_float eta, ior; ///< IOR below over IOR above; IOR below
+    shared_float alpha;    ///< 0: smooth
     shared_uint distribution;
     shared_uint multiple;     ///< 1: light between facets is followed
     shared_float albedo;      ///< substrate, or of scattering: guess for roulette, mean over lanes

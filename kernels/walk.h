@@ -3,11 +3,11 @@
 // by looking for a light and which by finding one is told in walk_light.h.
 //
 // The walk is scalar: directions, and weights of what does not depend on wavelength. What does is
-// recorded as events (walk_events.h), which `gather` replays backwards on all lanes at once, so that
-// re-radiation acts inside the walk at the cost of one operator a meeting. Interfaces are walked
-// through with reciprocal scattering as if the camera sent light: directions then follow f cos for
-// radiance that comes back, the factors n^2 of refraction cancel between air and air, and for a
-// connection below are in the light's fluence.
+// recorded as events (walk_events.h), which `gather` replays backwards on all lanes at once, so
+// that re-radiation acts inside the walk at the cost of one operator a meeting. Interfaces are
+// walked through with reciprocal scattering as if the camera sent light: directions then follow f
+// cos for radiance that comes back, the factors n^2 of refraction cancel between air and air, and
+// for a connection below are in the light's fluence.
 #ifndef RERADIANT_WALK_H
 #define RERADIANT_WALK_H
 
@@ -109,8 +109,7 @@ int walk_meets_interface(Walk* walk) {
         targets.same = same->v;
         targets.beyond = below->v;
     }
-    const WalkDeparture departure =
-        walk_interface(surface, walk->at.v, targets, &walk->random);
+    const WalkDeparture departure = walk_interface(surface, walk->at.v, targets, &walk->random);
     if (targets.has_same)
         walk_connect(walk, same, departure.same_density);
     if (targets.has_beyond)
@@ -132,8 +131,7 @@ int walk_meets_diffuse(Walk* walk) {
 #if FEATURE_OREN_NAYAR
     if (walk->stack.sigma > 0.0f) {
         towards_light = oren_nayar_value(walk->stack.sigma, light->v, v);
-        departure.weight =
-            PI_REAL * oren_nayar_value(walk->stack.sigma, departure.direction, v);
+        departure.weight = PI_REAL * oren_nayar_value(walk->stack.sigma, departure.direction, v);
     }
 #endif
     walk_write(&walk->writer, WALK_CODE(WALK_SUBSTRATE, 0u), 1.0f);
@@ -165,9 +163,9 @@ int walk_single_conductor(Walk* walk, WalkSurface surface, WalkDeparture* depart
     const Vec3 v = walk->at.v;
     const WalkArrival* light = walk->arrivals + WALK_AT_SUBSTRATE;
     if (light->fluence > 0.0f)
-        walk_connect_by_facet(walk, v,
-                              light->v.z * microfacet_reflection(surface.distribution,
-                                                                 surface.alpha, v, light->v));
+        walk_connect_by_facet(
+            walk, v,
+            light->v.z * microfacet_reflection(surface.distribution, surface.alpha, v, light->v));
     const float u1 = walk_uniform(&walk->random), u2 = walk_uniform(&walk->random);
     const Vec3 h = microfacet_sample(surface.distribution, surface.alpha, v, u1, u2);
     const float cos_i = vec3_dot(v, h);
@@ -218,16 +216,17 @@ int walk_meets_conductor(Walk* walk, WalkPartRecord substrate) {
 #endif
 
 #if FEATURE_SCATTERING_SLABS
-/// Deflected by Henyey and Greenstein 1941: 1 - cos = (1 - g) (1 - u) (s + 1 - g) / (1 - g + 2 g u),
-/// s = (1 - g) (1 + g) / (1 - g + 2 g u), which divides by no g and keeps its digits near g = 1.
+/// Deflected by Henyey and Greenstein 1941: 1 - cos = (1 - g) (1 - u) (s + 1 - g) / (1 - g + 2 g
+/// u), s = (1 - g) (1 + g) / (1 - g + 2 g u), which divides by no g and keeps its digits near g
+/// = 1.
 Vec3 walk_deflected(Vec3 direction, float g, float u1, float u2) {
     const float d = (1.0f - g) + 2.0f * g * u1;
     const float s = (1.0f - g) * (1.0f + g) / d;
     const float fall = fmin((1.0f - g) * (1.0f - u1) * (s + (1.0f - g)) / d, 2.0f);
     const float sine = sqrt(fall * (2.0f - fall));
     const float phi = 2.0f * PI_REAL * u2;
-    return vec3_normalise(sampling_to_world(
-        sampling_frame(direction), vec3(sine * cos(phi), sine * sin(phi), 1.0f - fall)));
+    return vec3_normalise(sampling_to_world(sampling_frame(direction),
+                                            vec3(sine * cos(phi), sine * sin(phi), 1.0f - fall)));
 }
 
 /// Connects a scattering event at a height (0: top of the slab, 1: its end) to the light that
@@ -239,8 +238,8 @@ void walk_connect_in_slab(Walk* walk, uint k, float height, Vec3 back) {
             continue;
         const Vec3 l = down ? light->v : walk_mirrored(light->v);
         // light comes along -l and leaves along `back`
-        if (walk_connect(walk, light, layer_stack_phase(walk->stack.parts[k].anisotropy,
-                                                        -vec3_dot(l, back))))
+        if (walk_connect(walk, light,
+                         layer_stack_phase(walk->stack.parts[k].anisotropy, -vec3_dot(l, back))))
             walk_write(&walk->writer, WALK_CODE(WALK_LIGHT_PASS, k),
                        (down ? height : 1.0f - height) / light->v.z);
     }

@@ -111,8 +111,8 @@ DEVICE_FUNCTION real walk_reflection_density(WalkSurface surface, Vec3 v, Vec3 w
     if (!(area > REAL(0.0)) || !(cos_i > REAL(0.0))) {
         return REAL(0.0);
     }
-    return walk_reflectance(surface, cos_i) *
-           microfacet_d(surface.distribution, surface.alpha, h) / (REAL(4.0) * area);
+    return walk_reflectance(surface, cos_i) * microfacet_d(surface.distribution, surface.alpha, h) /
+           (REAL(4.0) * area);
 }
 
 /// The same of refraction into w (frame beyond).

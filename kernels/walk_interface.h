@@ -84,8 +84,8 @@ DEVICE_FUNCTION Vec3 walk_leave_facet(WalkSurface surface, Vec3 v, Vec3 h, int p
 DEVICE_FUNCTION WalkDeparture walk_smooth(WalkSurface surface, Vec3 v, WalkRandom* random) {
     WalkDeparture departure = walk_departure();
     departure.passed = !(walk_uniform(random) < walk_reflectance(surface, v.z));
-    departure.direction = walk_leave_facet(
-        surface, v, vec3(REAL(0.0), REAL(0.0), REAL(1.0)), departure.passed);
+    departure.direction =
+        walk_leave_facet(surface, v, vec3(REAL(0.0), REAL(0.0), REAL(1.0)), departure.passed);
     return departure;
 }
 
@@ -124,8 +124,7 @@ DEVICE_FUNCTION WalkDeparture walk_single(WalkSurface surface, Vec3 v, WalkTarge
     departure.passed = !(walk_uniform(random) < walk_reflectance(surface, cos_i));
     departure.direction = walk_leave_facet(surface, v, h, departure.passed);
     if (departure.direction.z > REAL(0.0)) {
-        const real cos_w =
-            departure.passed ? fresnel_cos_transmitted(cos_i, surface.eta) : cos_i;
+        const real cos_w = departure.passed ? fresnel_cos_transmitted(cos_i, surface.eta) : cos_i;
         departure.weight = walk_single_share(surface, v, h, departure.direction, cos_w);
     }
     return departure;
@@ -217,12 +216,13 @@ DEVICE_FUNCTION WalkDeparture walk_multiple(WalkSurface surface, Vec3 v, WalkTar
     WalkBetweenFacets walk = walk_between_facets(surface, v, walk_uniform(random));
     for (;;) {
         const real u1 = walk_uniform(random), u2 = walk_uniform(random);
-        const Vec3 h = microfacet_sample(walk.surface.distribution, walk.surface.alpha, walk.v, u1, u2);
+        const Vec3 h =
+            microfacet_sample(walk.surface.distribution, walk.surface.alpha, walk.v, u1, u2);
         const real cos_i = vec3_dot(walk.v, h);
-        const int passes = !(walk_uniform(random) < walk_reflectance(walk.surface, fmax(cos_i, REAL(0.0))));
+        const int passes =
+            !(walk_uniform(random) < walk_reflectance(walk.surface, fmax(cos_i, REAL(0.0))));
         walk_add_densities(&walk, targets, &departure);
-        if (!(cos_i > REAL(0.0)) ||
-            !walk_late_survives(walk.order, random, &departure.weight)) {
+        if (!(cos_i > REAL(0.0)) || !walk_late_survives(walk.order, random, &departure.weight)) {
             departure.weight = REAL(0.0);
             return departure;
         }

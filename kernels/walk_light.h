@@ -29,9 +29,9 @@ typedef struct {
 
 /// Light at one place of the stack.
 typedef struct {
-    Vec3 v;          ///< to where it comes from, in the frame of the surface that it arrives at
-    float fluence;   ///< irradiance over cosine and n^2, without what depends on wavelength:
-    uint mirrors;    ///< reflections by a smooth conductor
+    Vec3 v;        ///< to where it comes from, in the frame of the surface that it arrives at
+    float fluence; ///< irradiance over cosine and n^2, without what depends on wavelength:
+    uint mirrors;  ///< reflections by a smooth conductor
     float mirror_cosine;
     float lengths[WALK_LAYERS]; ///< in each slab, in thicknesses
 } WalkArrival;
@@ -113,9 +113,9 @@ WalkDeparture walk_light_through(WalkSurface surface, Vec3 v, WalkRandom* random
     departure.direction = walk_refracted(v, h, surface.eta);
     departure.passed = departure.direction.z > 0.0f;
     if (departure.passed)
-        departure.weight = (1.0f - reflectance) *
-                           walk_single_share(surface, v, h, departure.direction,
-                                             fresnel_cos_transmitted(cos_i, surface.eta));
+        departure.weight =
+            (1.0f - reflectance) * walk_single_share(surface, v, h, departure.direction,
+                                                     fresnel_cos_transmitted(cos_i, surface.eta));
     return departure;
 }
 
@@ -127,8 +127,7 @@ WalkDeparture walk_light_smooth(WalkSurface surface, WalkPosition at, WalkRandom
         return walk_smooth(surface, at.v, random);
     departure.passed = 1;
     departure.weight = 1.0f - walk_reflectance(surface, at.v.z);
-    departure.direction =
-        walk_leave_facet(surface, at.v, vec3(0.0f, 0.0f, 1.0f), departure.passed);
+    departure.direction = walk_leave_facet(surface, at.v, vec3(0.0f, 0.0f, 1.0f), departure.passed);
     return departure;
 }
 
@@ -161,7 +160,8 @@ int walk_light_meets(WalkStack stack, WalkPosition* at, WalkArrival* light, Walk
                                              : walk_light_smooth(surface, *at, random);
     if (is_rough && !departure.passed)
         return 0;
-    const float flux = light->fluence * departure.weight * at->v.z * square(walk_ior(stack, at->medium));
+    const float flux =
+        light->fluence * departure.weight * at->v.z * square(walk_ior(stack, at->medium));
     walk_go_on(at, departure);
     light->fluence = flux / (at->v.z * square(walk_ior(stack, at->medium)));
     return light->fluence > 0.0f && at->v.z > 0.0f;

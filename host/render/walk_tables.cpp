@@ -36,13 +36,12 @@ void check_material(const Material& material, const std::string& file) {
         refuse(material, file, "walk renders stacks whose IOR does not depend on wavelength",
                "give numbers for ior, use adding or weidlich-wilkie, or measure the material");
     if (stack.has_films())
-        refuse(material, file, "walk renders no films between dielectrics",
-               "use weidlich-wilkie");
+        refuse(material, file, "walk renders no films between dielectrics", "use weidlich-wilkie");
     if (stack.has_flakes())
         refuse(material, file, "walk renders no flakes", "use weidlich-wilkie");
-    bool v_cavities = has_conductor && walks_between_v_cavities(conductor.distribution,
-                                                                conductor.alpha,
-                                                                conductor.scattering);
+    bool v_cavities =
+        has_conductor &&
+        walks_between_v_cavities(conductor.distribution, conductor.alpha, conductor.scattering);
     for (const Layer& layer : stack.layers)
         v_cavities |= walks_between_v_cavities(layer.distribution, layer.alpha, layer.scattering);
     if (v_cavities)
@@ -81,8 +80,8 @@ void set_references(const SlabDepths& depths, WalkPartRecord& part) {
     }
     least = std::max(least, least_reference * most);
     for (int r = 0; r < WALK_REFERENCES; ++r)
-        part.references[r] = static_cast<float>(
-            least * std::pow(most / least, r / (WALK_REFERENCES - 1.0)));
+        part.references[r] =
+            static_cast<float>(least * std::pow(most / least, r / (WALK_REFERENCES - 1.0)));
     part.albedo = static_cast<float>(albedo / static_cast<double>(count));
 }
 
@@ -158,8 +157,8 @@ private:
             return;
         }
         WalkPartRecord part = surface_part(0.0, Distribution::Ggx, Scattering::Single);
-        part.albedo = static_cast<float>(
-            std::clamp(std::numbers::pi * middle.row_sums().mean(), 0.0, 1.0));
+        part.albedo =
+            static_cast<float>(std::clamp(std::numbers::pi * middle.row_sums().mean(), 0.0, 1.0));
         out_.walk_parts.push_back(part);
     }
 

@@ -194,8 +194,8 @@ void Wavefront::gather(const Batch& batch) {
     gather_.bind(radiance_.buffer(), paths_.buffer(), vertices_.buffer(), shadow_rays_.buffer(),
                  lobe_weights_.buffer(), colours_.buffer(), materials_.buffer(), layers_.buffer(),
                  lobes_.buffer(), lights_.buffer(), tables_.buffer(), walk_parts_.buffer(),
-                 walk_chunks_.buffer(), walk_vertices_.buffer(), scene_.image.light,
-                 batch.paths(), capacity_, static_cast<std::uint32_t>(phases_));
+                 walk_chunks_.buffer(), walk_vertices_.buffer(), scene_.image.light, batch.paths(),
+                 capacity_, static_cast<std::uint32_t>(phases_));
     gather_.launch(device_, batch.paths());
     wait_for_kernels(statistics_.gather_seconds);
 }
@@ -224,10 +224,10 @@ void Wavefront::with_film(const std::function<void(const FilmSums&)>& use) const
 
 std::size_t Wavefront::device_bytes() const {
     return materials_.bytes() + layers_.bytes() + lobes_.bytes() + surfaces_.bytes() +
-           walk_parts_.bytes() + walk_chunks_.bytes() + walk_vertices_.bytes() +
-           textures_.bytes() + colours_.bytes() + lights_.bytes() + tables_.bytes() +
-           rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() + paths_.bytes() +
-           vertices_.bytes() + lobe_weights_.bytes() + radiance_.bytes() + film_sums_.bytes() +
+           walk_parts_.bytes() + walk_chunks_.bytes() + walk_vertices_.bytes() + textures_.bytes() +
+           colours_.bytes() + lights_.bytes() + tables_.bytes() + rays_.bytes() +
+           shadow_rays_.bytes() + hits_.bytes() + paths_.bytes() + vertices_.bytes() +
+           lobe_weights_.bytes() + radiance_.bytes() + film_sums_.bytes() +
            film_statistics_.bytes() + film_bands_.bytes() + film_weights_.bytes() +
            y_weights_.bytes();
 }
