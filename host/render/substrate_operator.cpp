@@ -2,8 +2,7 @@
 
 #include "host/layers/effective_matrix.h"
 #include "host/spectral/reradiation.h"
-
-#include <Eigen/SVD>
+#include "host/spectral/singular_values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,8 +34,7 @@ bool may_factor(const Eigen::MatrixXd& matrix) {
         const Eigen::MatrixXd block = matrix.bottomLeftCorner(n - split, split);
         if (std::min(block.rows(), block.cols()) <= most_factors)
             continue;
-        const Eigen::BDCSVD<Eigen::MatrixXd> svd(block);
-        if (svd.singularValues()(most_factors) > bound)
+        if (singular_values(block)(most_factors) > bound)
             return false;
     }
     return true;

@@ -1,8 +1,8 @@
 #include "host/spectral/masked_least_squares.h"
 #include "host/spectral/reradiation.h"
+#include "host/spectral/singular_values.h"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <array>
@@ -51,14 +51,14 @@ private:
 /// Non-negative double SVD (Boutsidis and Gallopoulos 2008): of each singular pair the sign that
 /// carries more energy.
 FactorPair singular_start(const Matrix& target, int rank) {
-    const Eigen::BDCSVD<Matrix> svd(target, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const ThinSvd svd = thin_svd(target);
     FactorPair start{Matrix::Zero(target.rows(), rank), Matrix::Zero(target.cols(), rank)};
-    for (int k = 0; k < rank && k < svd.singularValues().size(); ++k) {
-        const Vector u = svd.matrixU().col(k), v = svd.matrixV().col(k);
+    for (int k = 0; k < rank && k < svd.s.size(); ++k) {
+        const Vector u = svd.u.col(k), v = svd.v.col(k);
         const Vector up = u.cwiseMax(0.0), vp = v.cwiseMax(0.0);
         const Vector um = (-u).cwiseMax(0.0), vm = (-v).cwiseMax(0.0);
         const bool plus = up.norm() * vp.norm() >= um.norm() * vm.norm();
-        const double scale = std::sqrt(svd.singularValues()(k));
+        const double scale = std::sqrt(svd.s(k));
         start.emission.col(k) = scale * (plus ? up : um);
         start.excitation.col(k) = scale * (plus ? vp : vm);
     }
@@ -132,7 +132,7 @@ std::vector<double> unbeatable_errors(const Matrix& target, int max_rank) {
     std::vector<double> bounds(static_cast<std::size_t>(max_rank) + 1, 0.0);
     for (Eigen::Index split = 1; split < n; split += stride) {
         const Matrix known = target.bottomLeftCorner(n - split, split);
-        const Vector values = Eigen::BDCSVD<Matrix>(known).singularValues();
+        const Vector values = singular_values(known);
         for (Eigen::Index rank = 0; rank <= max_rank && rank < values.size(); ++rank) {
             double& bound = bounds[static_cast<std::size_t>(rank)];
             bound = std::max(bound, values.tail(values.size() - rank).norm() / target.norm());
