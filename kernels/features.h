@@ -112,6 +112,10 @@
 #ifndef LOBES
 #define LOBES 2
 #endif
+/// Layers of the material with most that is walked through.
+#ifndef WALK_LAYERS
+#define WALK_LAYERS 2
+#endif
 
 #define FEATURE_LIGHT_SAMPLING                                                                     \
     (FEATURE_AREA_LIGHTS || FEATURE_DELTA_LIGHTS || FEATURE_ENVIRONMENT_IMAGE)

@@ -23,6 +23,7 @@ public:
           optics_(material, model, plan), parts_(stack_parts(material)) {}
 
     void append() {
+        record_.walk = NO_INDEX;
         record_.spectral = optics_.is_spectral() ? 1u : 0u;
         out_.features.spectral_stack |= optics_.is_spectral();
         note_thick_films();

@@ -71,6 +71,7 @@ KernelDefines RenderFeatures::defines() const {
     defines.emplace_back("CHUNKS", chunks);
     defines.emplace_back("FILM_CHUNKS", film_chunks);
     defines.emplace_back("LOBES", lobes);
+    defines.emplace_back("WALK_LAYERS", walk_layers);
     return defines;
 }
 

@@ -1,7 +1,7 @@
 #include "host/render/scene_tables.h"
 
-#include "host/error.h"
 #include "host/render/stack_optics.h"
+#include "host/render/walk_tables.h"
 #include "host/scene/model_choice.h"
 #include "kernels/features.h"
 
@@ -38,21 +38,23 @@ SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, M
     std::vector<Model> models;
     for (const Material& material : scene.materials) {
         const ModelChoice choice = choose_model(material, model, ModelUse::Render);
-        if (choice.model == Model::Walk)
-            throw_input_error({scene.file.string()},
-                              "the model 'walk' is not part of this version's renderer",
-                              "use adding or weidlich-wilkie");
         models.push_back(choice.model);
         tables.notes.push_back(model_note(material, choice));
-        tables.features.lobes =
-            std::max(tables.features.lobes, deeper_lobe_count(material, choice.model));
+        if (choice.model != Model::Walk)
+            tables.features.lobes =
+                std::max(tables.features.lobes, deeper_lobe_count(material, choice.model));
     }
     tables.features.chunks = plan.padded_lanes() / WIDTH;
     tables.features.film_chunks = tables.features.chunks;
     tables.camera = camera_record(scene.camera, scene.film);
     tables.features.lens |= scene.camera.lens_radius > 0.0;
-    for (std::size_t i = 0; i < scene.materials.size(); ++i)
-        append_material(scene.materials[i], models[i], plan, tables.features.lobes, tables);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        if (models[i] == Model::Walk)
+            append_walk_material(material, plan, scene.file.string(), tables);
+        else
+            append_material(material, models[i], plan, tables.features.lobes, tables);
+    }
     drop_repeats(tables.notes);
     append_surfaces(scene, tables);
     append_lights(scene, plan, tables);

@@ -56,6 +56,8 @@ private:
 
     void build_kernels(BuildStatistics& build);
     void trace_batch(const Batch& batch);
+    void trace_paths(const Batch& batch);
+    bool walks_fit();
     void generate(const Batch& batch);
     bool intersect(const Batch& batch, std::uint32_t depth);
     void shade(const Batch& batch, std::uint32_t depth);
@@ -81,6 +83,10 @@ private:
     DeviceArray<SurfaceRecord> surfaces_;
     DeviceArray<TextureRecord> textures_;
     DeviceArray<LightRecord> lights_;
+    DeviceArray<WalkPartRecord> walk_parts_;
+    DeviceArray<WalkChunk> walk_chunks_;
+    DeviceArray<std::uint32_t> walk_chunks_used_;
+    DeviceArray<WalkVertexRecord> walk_vertices_;
     DeviceArray<float> tables_, colours_;
     DeviceArray<RayRecord> rays_, shadow_rays_;
     DeviceArray<HitRecord> hits_;
