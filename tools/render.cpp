@@ -55,7 +55,9 @@ nlohmann::ordered_json statistics_json(const RenderResult& result, const Device&
     for (const RenderProgress& pass : result.passes)
         passes.push_back({{"spp", pass.samples},
                           {"seconds", pass.seconds},
-                          {"relmse", finite_or_null(pass.relmse)}});
+                          {"relmse", finite_or_null(pass.relmse)},
+                          {"relmse_low", pass.relmse_low},
+                          {"relmse_high", finite_or_null(pass.relmse_high)}});
     nlohmann::ordered_json features;
     for (const auto& [name, on] : result.features)
         features[name] = on ? "on" : "off";

@@ -62,6 +62,24 @@ bool must_stop(const RenderProgress& state, const RenderOptions& options) {
            state.relmse <= options.relmse;
 }
 
+void estimate_error(RenderProgress& state, const FilmSums& film, const FilmLayout& layout,
+                    const WavelengthPlan& plan) {
+    const RelmseEstimate estimate = estimated_relmse(film, layout, plan.film.count, state.samples);
+    state.relmse = estimate.value;
+    state.relmse_low = estimate.low;
+    state.relmse_high = estimate.high;
+}
+
+SpectralImage resolved(const Wavefront& wavefront, const FilmLayout& layout, const Scene& scene,
+                       const WavelengthPlan& plan, const RenderProgress& state) {
+    SpectralImage image;
+    wavefront.with_film([&](const FilmSums& film) {
+        image = resolve_film(film, layout, scene.film.width, scene.film.height, plan.film,
+                             state.samples);
+    });
+    return image;
+}
+
 void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables& tables) {
     const WavefrontStatistics& statistics = wavefront.statistics();
     result.stage_seconds = {
@@ -102,7 +120,8 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
 }
 
 RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
-                    const std::function<bool(const RenderProgress&)>& progress) {
+                    const std::function<bool(const RenderProgress&)>& progress,
+                    const RenderObserver& observe) {
     const Clock::time_point start = Clock::now();
     RenderResult result;
     result.plan =
@@ -119,25 +138,27 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
 
     const FilmLayout layout =
         film_layout(result.plan, tables.features.band_variance, tables.features.scatter);
+    double observing_seconds = 0.0;
     const Clock::time_point rendering = Clock::now();
     RenderProgress state;
     while (!must_stop(state, options)) {
         const std::uint32_t samples = next_pass(state.samples, options);
         wavefront.render_pass(options.first_sample + state.samples, samples);
         state.samples += samples;
-        state.seconds = seconds_since(rendering);
-        wavefront.with_film([&](const FilmSums& film) {
-            state.relmse = estimated_relmse(film, layout, result.plan.film.count, state.samples);
-        });
+        state.seconds = seconds_since(rendering) - observing_seconds;
+        wavefront.with_film(
+            [&](const FilmSums& film) { estimate_error(state, film, layout, result.plan); });
         result.passes.push_back(state);
+        if (observe) {
+            const Clock::time_point start_of_observing = Clock::now();
+            observe(state, [&] { return resolved(wavefront, layout, scene, result.plan, state); });
+            observing_seconds += seconds_since(start_of_observing);
+        }
         if (progress && !progress(state))
             break;
     }
-    wavefront.with_film([&](const FilmSums& film) {
-        result.image = resolve_film(film, layout, scene.film.width, scene.film.height,
-                                    result.plan.film, state.samples);
-        result.non_finite = film.refused();
-    });
+    result.image = resolved(wavefront, layout, scene, result.plan, state);
+    wavefront.with_film([&](const FilmSums& film) { result.non_finite = film.refused(); });
     result.samples = state.samples;
     result.relmse = state.relmse;
     collect(result, wavefront, tables);
