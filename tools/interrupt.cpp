@@ -1,0 +1,26 @@
+#include "tools/interrupt.h"
+
+#include <csignal>
+
+namespace reradiant {
+
+namespace {
+
+volatile std::sig_atomic_t requested = 0;
+
+void note_interrupt(int) {
+    requested = 1;
+}
+
+} // namespace
+
+void catch_interrupts() {
+    std::signal(SIGINT, note_interrupt);
+    std::signal(SIGTERM, note_interrupt);
+}
+
+bool interrupt_requested() {
+    return requested != 0;
+}
+
+} // namespace reradiant
