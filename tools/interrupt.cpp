@@ -8,8 +8,9 @@ namespace {
 
 volatile std::sig_atomic_t requested = 0;
 
-void note_interrupt(int) {
+void note_interrupt(int signal) {
     requested = 1;
+    std::signal(signal, SIG_DFL);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "host/film/merge.h"
 #include "host/scene/scene.h"
 #include "host/spectral/grid.h"
 
@@ -19,9 +20,6 @@ Model parse_model_option(const std::string& text);
 /// --wavelengths comb[:N]: N, or 0 for one wavelength a film band.
 int parse_wavelengths_option(const std::string& text);
 
-struct SampleRange {
-    std::uint32_t first = 0, end = 0; ///< samples first .. end - 1
-};
 /// --sample-range A:B with A < B
 SampleRange parse_sample_range_option(const std::string& text);
 

@@ -93,6 +93,10 @@ std::vector<double> as_vector(const Eigen::VectorXd& v) {
 
 } // namespace
 
+CosineTable lobe_albedo(const AddingTransport::Lobe& lobe) {
+    return CosineTable(as_vector(spread_of(lobe)->rowwise().sum()));
+}
+
 LobeTables fit_lobe(const AddingTransport::Lobe& lobe,
                     const std::function<double(double cosine)>& wanted) {
     const std::shared_ptr<const Eigen::MatrixXd> spread = spread_of(lobe);

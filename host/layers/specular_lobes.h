@@ -28,6 +28,10 @@ struct LobeTables {
     CosineTable amplitude, albedo;
 };
 
+/// Albedo of the lobe D G2 / (4 ci co) itself, by cosine: what its facets send away at once when
+/// they reflect everything. Good to 1e-3.
+CosineTable lobe_albedo(const AddingTransport::Lobe& lobe);
+
 /// The amplitude whose lobe's albedo comes near `wanted` (unit 1, >= 0) without exceeding it at
 /// any node: fixed-point steps on a K a = wanted, K the lobe's own spread (without Fresnel).
 LobeTables fit_lobe(const AddingTransport::Lobe& lobe,

@@ -64,9 +64,13 @@ FilmValues film_at(const std::optional<ThinFilm>& film, double wavelength_nm) {
 } // namespace
 
 ConductorValues conductor_at(const Conductor& conductor, double wavelength_nm) {
-    return {conductor.ior(wavelength_nm), conductor.kappa(wavelength_nm),
-            conductor.distribution,       conductor.alpha,
-            conductor.scattering,         film_at(conductor.film, wavelength_nm)};
+    return {conductor.ior(wavelength_nm),
+            conductor.kappa(wavelength_nm),
+            conductor.distribution,
+            conductor.alpha,
+            conductor.scattering,
+            film_at(conductor.film, wavelength_nm),
+            conductor.film ? wavelength_nm : 0.0};
 }
 
 StackValues stack_at(const LayerStack& stack, double wavelength_nm) {

@@ -80,6 +80,7 @@ struct ConductorValues {
     double alpha = 0.0;
     Scattering scattering = Scattering::Multiple;
     FilmValues film = {};
+    double wavelength_nm = 0.0; ///< of the film; 0 when there is none
 
     bool operator==(const ConductorValues&) const = default;
 };

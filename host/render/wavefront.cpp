@@ -1,5 +1,6 @@
 #include "host/render/wavefront.h"
 
+#include "host/error.h"
 #include "kernels/features.h"
 
 #include <algorithm>
@@ -183,6 +184,17 @@ void Wavefront::with_film(const std::function<void(const FilmSums&)>& use) const
         const auto sums = film_sums_.map(CL_MAP_READ, 0, film_sums_.size());
         const auto statistics = film_statistics_.map(CL_MAP_READ, 0, film_statistics_.size());
         use({sums.span(), statistics.span()});
+    });
+}
+
+void Wavefront::restore_film(const FilmSums& film) const {
+    if (film.sums.size() != film_sums_.size() || film.statistics.size() != film_statistics_.size())
+        throw_runtime_error("the film that is restored has another size");
+    opencl_checked("restoring the film", [&] {
+        const auto sums = film_sums_.map(CL_MAP_WRITE, 0, film_sums_.size());
+        const auto statistics = film_statistics_.map(CL_MAP_WRITE, 0, film_statistics_.size());
+        std::copy(film.sums.begin(), film.sums.end(), sums.span().begin());
+        std::copy(film.statistics.begin(), film.statistics.end(), statistics.span().begin());
     });
 }
 

@@ -41,6 +41,10 @@ public:
 
     /// Calls `use` with the film's sums as they are on the device, mapped for the call.
     void with_film(const std::function<void(const FilmSums&)>& use) const;
+    /// Replaces the film's sums by those of an earlier render; their sizes must be the film's.
+    void restore_film(const FilmSums& film) const;
+    /// Numbers that the film's sums and statistics hold together.
+    std::size_t film_float_count() const { return film_sums_.size() + film_statistics_.size(); }
     const WavefrontStatistics& statistics() const { return statistics_; }
     std::size_t device_bytes() const;
 
