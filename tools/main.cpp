@@ -26,6 +26,8 @@ void add_commands(CLI::App& program, CommandContext& context) {
     add_colour_command(program, context);
     add_fit_command(program, context);
     add_compare_command(program, context);
+    add_converge_command(program, context);
+    add_study_command(program, context);
     add_merge_command(program, context);
     add_validate_command(program, context);
     add_info_command(program, context);

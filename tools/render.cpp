@@ -8,6 +8,7 @@
 #include "host/report/progress.h"
 #include "host/scene/scene.h"
 #include "tools/command.h"
+#include "tools/interrupt.h"
 #include "tools/parse_options.h"
 
 #include <fmt/format.h>
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <memory>
 #include <sys/resource.h>
 
@@ -43,14 +43,6 @@ struct RenderCommand {
     }
 };
 
-constexpr int exit_interrupted = 130;
-volatile std::sig_atomic_t interrupted = 0;
-/// The first signal lets the pass end and a checkpoint be written, the second ends the program.
-void note_interrupt(int signal) {
-    interrupted = 1;
-    std::signal(signal, SIG_DFL);
-}
-
 std::uint64_t peak_memory_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -70,7 +62,9 @@ nlohmann::ordered_json statistics_json(const RenderResult& result, const Device&
     for (const RenderProgress& pass : result.passes)
         passes.push_back({{"spp", pass.samples},
                           {"seconds", pass.seconds},
-                          {"relmse", finite_or_null(pass.relmse)}});
+                          {"relmse", finite_or_null(pass.relmse)},
+                          {"relmse_low", pass.relmse_low},
+                          {"relmse_high", finite_or_null(pass.relmse_high)}});
     nlohmann::ordered_json features;
     for (const auto& [name, on] : result.features)
         features[name] = on ? "on" : "off";
@@ -209,8 +203,7 @@ int run_render(RenderCommand command, const CommandContext& context) {
                        command.output.string(), command.render.samples);
         return 0;
     }
-    std::signal(SIGINT, note_interrupt);
-    std::signal(SIGTERM, note_interrupt);
+    catch_interrupts(); // the pass ends and a checkpoint is written
     RenderResult result;
     {
         ProgressBar bar(common.quiet);
@@ -219,7 +212,7 @@ int run_render(RenderCommand command, const CommandContext& context) {
             const double by_time = state.seconds / command.render.time_seconds;
             bar.update(std::min(1.0, std::max(by_samples, by_time)),
                        fmt::format("{} spp, relMSE {:.2g}", state.samples, state.relmse));
-            return interrupted == 0;
+            return !interrupt_requested();
         });
     }
     if (result.interrupted)

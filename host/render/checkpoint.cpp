@@ -25,16 +25,17 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "checkpoints hold the floats as they are");
 
-constexpr const char* format_name = "reradiant render checkpoint 1";
+constexpr const char* format_name = "reradiant render checkpoint 2";
 constexpr std::uint64_t most_header_bytes = 1u << 20;
 constexpr std::uint64_t digest_bytes = 64;
 
 /// Infinity has no name in JSON.
 nlohmann::json pass_json(const RenderProgress& pass) {
-    nlohmann::json relmse;
-    if (std::isfinite(pass.relmse))
-        relmse = pass.relmse;
-    return {pass.samples, pass.seconds, relmse};
+    const auto finite_or_null = [](double value) {
+        return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+    };
+    return {pass.samples, pass.seconds, finite_or_null(pass.relmse), pass.relmse_low,
+            finite_or_null(pass.relmse_high)};
 }
 
 RenderProgress pass_from(const nlohmann::json& json) {
@@ -43,6 +44,9 @@ RenderProgress pass_from(const nlohmann::json& json) {
     pass.seconds = json.at(1).get<double>();
     if (!json.at(2).is_null())
         pass.relmse = json.at(2).get<double>();
+    pass.relmse_low = json.at(3).get<double>();
+    if (!json.at(4).is_null())
+        pass.relmse_high = json.at(4).get<double>();
     return pass;
 }
 

@@ -29,6 +29,12 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+double seconds_of(const std::function<void()>& work) {
+    const Clock::time_point start = Clock::now();
+    work();
+    return seconds_since(start);
+}
+
 std::uint64_t machine_memory_bytes() {
     return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
            static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE));
@@ -70,6 +76,24 @@ std::uint32_t next_pass(const RenderProgress& state, const RenderOptions& option
 bool must_stop(const RenderProgress& state, const RenderOptions& options) {
     return state.samples >= options.samples || state.seconds >= options.time_seconds ||
            state.relmse <= options.relmse;
+}
+
+void estimate_error(RenderProgress& state, const FilmSums& film, const FilmLayout& layout,
+                    const WavelengthPlan& plan) {
+    const RelmseEstimate estimate = estimated_relmse(film, layout, plan.film.count, state.samples);
+    state.relmse = estimate.value;
+    state.relmse_low = estimate.low;
+    state.relmse_high = estimate.high;
+}
+
+SpectralImage resolved(const Wavefront& wavefront, const FilmLayout& layout, const Scene& scene,
+                       const WavelengthPlan& plan, const RenderProgress& state) {
+    SpectralImage image;
+    wavefront.with_film([&](const FilmSums& film) {
+        image = resolve_film(film, layout, scene.film.width, scene.film.height, plan.film,
+                             state.samples);
+    });
+    return image;
 }
 
 void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables& tables) {
@@ -189,7 +213,8 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
 }
 
 RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
-                    const std::function<bool(const RenderProgress&)>& progress) {
+                    const std::function<bool(const RenderProgress&)>& progress,
+                    const RenderObserver& observe) {
     const Clock::time_point start = Clock::now();
     RenderResult result;
     result.plan =
@@ -209,26 +234,28 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
     Checkpoints checkpoints(scene, device, options);
     RenderProgress state = checkpoints.resume(wavefront, result);
     const double seconds_before = state.seconds;
+    double observing_seconds = 0.0;
     const Clock::time_point rendering = Clock::now();
     while (!must_stop(state, options)) {
         const std::uint32_t samples = next_pass(state, options);
         wavefront.render_pass(options.first_sample + state.samples, samples);
         state.samples += samples;
-        state.seconds = seconds_before + seconds_since(rendering);
-        wavefront.with_film([&](const FilmSums& film) {
-            state.relmse = estimated_relmse(film, layout, result.plan.film.count, state.samples);
-        });
+        state.seconds = seconds_before + seconds_since(rendering) - observing_seconds;
+        wavefront.with_film(
+            [&](const FilmSums& film) { estimate_error(state, film, layout, result.plan); });
         result.passes.push_back(state);
+        if (observe)
+            observing_seconds += seconds_of([&] {
+                observe(state,
+                        [&] { return resolved(wavefront, layout, scene, result.plan, state); });
+            });
         result.interrupted = progress && !progress(state);
         checkpoints.after_pass(wavefront, result);
         if (result.interrupted)
             break;
     }
-    wavefront.with_film([&](const FilmSums& film) {
-        result.image = resolve_film(film, layout, scene.film.width, scene.film.height,
-                                    result.plan.film, state.samples);
-        result.non_finite = film.refused();
-    });
+    result.image = resolved(wavefront, layout, scene, result.plan, state);
+    wavefront.with_film([&](const FilmSums& film) { result.non_finite = film.refused(); });
     result.samples = state.samples;
     result.relmse = state.relmse;
     collect(result, wavefront, tables);

@@ -1,11 +1,13 @@
 #include "host/scene/material_reader.h"
 #include "host/scene/scene_parts.h"
+#include "host/scene/scene_table.h"
 #include "host/scene/surface_builder.h"
 #include "host/scene/textured_value.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -115,13 +117,7 @@ void read_lights(const TableReader& root, Scene& scene, LoadState& state) {
     }
 }
 
-} // namespace
-
-Scene load_scene(const std::filesystem::path& file) {
-    LoadState state;
-    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
-    state.add_to_digest(text);
-    const toml::table table = parse_toml(file.string(), text);
+Scene read_scene(const toml::table& table, const std::filesystem::path& file, LoadState& state) {
     const TableReader root(
         table, file.string(), "a scene",
         {"film", "camera", "integrator", "light", "shape", "material", "texture"});
@@ -141,6 +137,27 @@ Scene load_scene(const std::filesystem::path& file) {
     warn_outside_bands(scene, state);
     scene.hash = state.digest();
     return scene;
+}
+
+} // namespace
+
+Scene load_scene(const std::filesystem::path& file) {
+    LoadState state;
+    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
+    state.add_to_digest(text);
+    return read_scene(parse_toml(file.string(), text), file, state);
+}
+
+Scene scene_from_table(const toml::table& table, const std::filesystem::path& file) {
+    LoadState state;
+    std::ostringstream text;
+    text << toml::toml_formatter(table);
+    state.add_to_digest(text.str());
+    return read_scene(table, file, state);
+}
+
+toml::table read_scene_table(const std::filesystem::path& file) {
+    return parse_toml(file.string(), read_file(file, {file.string()}, MAX_TOML_BYTES));
 }
 
 Material load_material(const std::filesystem::path& file) {
