@@ -26,19 +26,19 @@
 #ifndef FEATURE_DISPERSION
 #define FEATURE_DISPERSION 1
 #endif
-/// Some material has a mirror delta (smooth interfaces).
+/// Some material has a mirror delta (smooth interfaces, metals, flakes).
 #ifndef FEATURE_SMOOTH
 #define FEATURE_SMOOTH 1
 #endif
-/// Some material has a rough top interface.
+/// Some material has a rough top interface, or is a bare rough metal.
 #ifndef FEATURE_ROUGH
 #define FEATURE_ROUGH 1
 #endif
-/// Some material has rough lobes of deeper interfaces.
+/// Some material has lobes of deeper interfaces, metals, flakes or slabs.
 #ifndef FEATURE_DEEPER_LOBES
 #define FEATURE_DEEPER_LOBES 1
 #endif
-/// Some material uses the model of Weidlich and Wilkie under a rough interface.
+/// Some material with lobes uses the model of Weidlich and Wilkie.
 #ifndef FEATURE_WEIDLICH_WILKIE
 #define FEATURE_WEIDLICH_WILKIE 1
 #endif
@@ -111,6 +111,10 @@
 /// Deeper rough lobes of the material that has most.
 #ifndef LOBES
 #define LOBES 2
+#endif
+/// Layers of the material with most that is walked through.
+#ifndef WALK_LAYERS
+#define WALK_LAYERS 2
 #endif
 
 #define FEATURE_LIGHT_SAMPLING                                                                     \

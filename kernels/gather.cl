@@ -8,13 +8,17 @@
 #include "kernels/reradiation.h"
 #include "kernels/shared.h"
 #include "kernels/table.h"
+#if FEATURE_WALK
+#include "kernels/walk_events.h"
+#endif
 
 typedef struct {
     MaterialRecord material;
     __global const LayerRecord* layers;
     __global const LobeRecord* lobes;
     __global const float* tables;
-    __global const float* colour; ///< of the vertex (VERTEX_COLOURS)
+    __global const float* colour;              ///< of the vertex (VERTEX_COLOURS)
+    __global const WalkPartRecord* walk_parts; ///< of the material, where it is walked through
     uint phase;
     uint phases;
 } GatherContext;
@@ -384,13 +388,96 @@ void gather_vertex(const GatherContext* context, const VertexRecord* vertex, int
         radiance[c] = up[c];
 }
 
+#if FEATURE_WALK
+/// exp(-(depth - sampled) length) of a slab for 16 lanes, times its scattering where it scattered.
+float16 walk_slab_lanes(const GatherContext* context, WalkPartRecord part, float sampled,
+                        float length, int scattered, uint chunk) {
+    const uint lanes = context->phase * LANES;
+    const float16 depth = vload16(chunk, context->tables + part.extinction + lanes);
+    const float16 passed = exp((sampled - depth) * length);
+#if FEATURE_SCATTERING_SLABS
+    if (scattered)
+        return passed * vload16(chunk, context->tables + part.scattering + lanes) / sampled;
+#endif
+    return passed;
+}
+
+/// L = M L; the material's operator is M / pi.
+void walk_substrate(const GatherContext* context, float16* radiance) {
+    float16 emitted[CHUNKS];
+    substrate(context, radiance, radiance, emitted);
+    for (uint c = 0u; c < CHUNKS; ++c)
+        radiance[c] = PI_REAL * emitted[c];
+}
+
+/// What one event takes from the lanes of `light` or of the path.
+float16 walk_event_lanes(const GatherContext* context, WalkEvent event, uint reference,
+                         uint chunk) {
+    const uint kind = WALK_KIND(event.code);
+    const WalkPartRecord part = context->walk_parts[WALK_INDEX(event.code)];
+#if FEATURE_TABULATED_REFLECTANCE
+    if (kind == WALK_REFLECT || kind == WALK_LIGHT_REFLECT)
+        return facet_reflectance(context, part.reflectance, event.value, chunk);
+#endif
+    const float sampled = kind == WALK_LIGHT_PASS ? 0.0f : part.references[reference];
+    return walk_slab_lanes(context, part, sampled, event.value, kind == WALK_SCATTER, chunk);
+}
+
+/// Replays a walk from its last event to its first: `radiance` holds what comes in along the
+/// path's next direction (weight included) and receives what leaves towards the camera; `light` is
+/// the spectrum of the light that connections see.
+void replay_walk(const GatherContext* context, WalkReader reader, uint reference, int lit,
+                 const float16* light, float16* radiance) {
+    float16 seen[CHUNKS];
+    for (uint c = 0u; c < CHUNKS; ++c)
+        seen[c] = light[c];
+    WalkEvent event;
+    while (walk_read(&reader, &event)) {
+        const uint kind = WALK_KIND(event.code);
+        if (kind == WALK_SUBSTRATE) {
+            walk_substrate(context, radiance);
+            continue;
+        }
+        for (uint c = 0u; c < CHUNKS; ++c) {
+            if (kind == WALK_CONNECT) {
+                if (lit)
+                    radiance[c] += event.value * seen[c];
+                seen[c] = light[c];
+            } else if (kind < WALK_CONNECT) {
+                radiance[c] *= walk_event_lanes(context, event, reference, c);
+            } else if (lit) {
+                seen[c] *= walk_event_lanes(context, event, reference, c);
+            }
+        }
+    }
+}
+
+/// Radiance that leaves a vertex which was walked through; `radiance` as in gather_vertex.
+void gather_walk(const GatherContext* context, const VertexRecord* vertex, WalkVertexRecord walk,
+                 __global const WalkChunk* chunks, int lit, __global const float* light_spectrum,
+                 uint light_is_image, float16* radiance) {
+    float16 light[CHUNKS];
+    const float weight = vertex->has_next ? walk.weight : 0.0f;
+    for (uint c = 0u; c < CHUNKS; ++c) {
+        radiance[c] = weight > 0.0f ? weight * radiance[c] : (float16)(0.0f);
+        light[c] =
+            lit ? emission(light_spectrum, context->colour, light_is_image, context->phases, c)
+                : (float16)(0.0f);
+    }
+    const WalkReader reader = {chunks, walk.chunk, walk.count};
+    replay_walk(context, reader, walk.reference, lit, light, radiance);
+}
+#endif
+
 __kernel void gather(__global float* radiance_out, __global const PathState* paths,
                      __global const VertexRecord* vertices, __global const RayRecord* shadow_rays,
                      __global const float* lobe_weights, __global const float* colours,
                      __global const MaterialRecord* materials, __global const LayerRecord* layers,
                      __global const LobeRecord* lobes, __global const LightRecord* lights,
-                     __global const float* tables, uint image_light, uint path_count, uint capacity,
-                     uint phases) {
+                     __global const float* tables, __global const WalkPartRecord* walk_parts,
+                     __global const WalkChunk* walk_chunks,
+                     __global const WalkVertexRecord* walk_vertices, uint image_light,
+                     uint path_count, uint capacity, uint phases) {
     const uint path = (uint)get_global_id(0);
     if (path >= path_count)
         return;
@@ -426,6 +513,14 @@ __kernel void gather(__global float* radiance_out, __global const PathState* pat
         lit = vertex.light != NO_INDEX && shadow_rays[slot].t_far >= 0.0f;
         if (lit)
             spectrum = tables + lights[vertex.light].spectrum + state.phase * LANES;
+#endif
+#if FEATURE_WALK
+        if (context.material.walk != NO_INDEX) {
+            context.walk_parts = walk_parts + context.material.walk;
+            gather_walk(&context, &vertex, walk_vertices[slot], walk_chunks, lit, spectrum,
+                        vertex.light == image_light, radiance);
+            continue;
+        }
 #endif
         gather_vertex(&context, &vertex, lit, spectrum, vertex.light == image_light,
                       lobe_weights + slot * (2u * LOBES), radiance);

@@ -9,9 +9,15 @@
 #include "kernels/sampling.h"
 #include "kernels/shared.h"
 #include "kernels/texture.h"
+#if FEATURE_WALK
+#include "kernels/walk.h"
+#endif
 
 /// Random dimensions of textures, far from those of lights and directions.
 #define TEXTURE_DIMENSION 0x40000000u
+/// The same of walks through stacks; each vertex of a path has a range of its own.
+#define WALK_DIMENSION 0x80000000u
+#define WALK_DIMENSIONS_PER_VERTEX 0x100000u
 
 /// What the stage reads of the scene.
 typedef struct {
@@ -181,16 +187,14 @@ LightSample sample_environment(const ShadeScene* scene, real u1, real u2, __glob
 #endif
 
 #if FEATURE_LIGHT_SAMPLING
-/// Samples one light by selection probability; fills the vertex and returns the shadow ray
-/// (inactive when the light cannot contribute).
-RayRecord sample_light(const ShadeScene* scene, SurfacePoint point, LayerStackView stack,
-                       const LayerChoice* choice, Random4 u, VertexRecord* vertex,
-                       __global float* lobe_weights, __global float* colour) {
-    RayRecord inactive = ray_record(vec3(0.0f, 0.0f, 0.0f), vec3(0.0f, 0.0f, 1.0f), -1.0f);
-    uint chosen = 0u;
-    while (chosen + 1u < scene->light_count && u.a >= scene->lights[chosen].cumulative)
-        ++chosen;
-    const LightRecord light = scene->lights[chosen];
+/// A direction to one light, chosen by selection probability; weight 0 when the light cannot
+/// contribute. *wi: the direction in the local frame.
+LightSample light_from_here(const ShadeScene* scene, SurfacePoint point, Random4 u, uint* chosen,
+                            Vec3* wi, __global float* colour) {
+    *chosen = 0u;
+    while (*chosen + 1u < scene->light_count && u.a >= scene->lights[*chosen].cumulative)
+        ++*chosen;
+    const LightRecord light = scene->lights[*chosen];
     LightSample sample;
 #if FEATURE_ENVIRONMENT_IMAGE
     if (light.type == LIGHT_ENVIRONMENT)
@@ -200,18 +204,36 @@ RayRecord sample_light(const ShadeScene* scene, SurfacePoint point, LayerStackVi
         sample = lights_sample(
             light, vec3(point.hit.position_x, point.hit.position_y, point.hit.position_z), u.b,
             u.c);
-    const Vec3 wi = sampling_to_local(point.frame, sample.direction);
-    if (!(sample.weight > 0.0f) || !(light.selection > 0.0f) || !(wi.z > 0.0f) ||
+    *wi = sampling_to_local(point.frame, sample.direction);
+    if (!(light.selection > 0.0f) || !(wi->z > 0.0f) ||
         !(vec3_dot(point.geometric, sample.direction) > 0.0f))
-        return inactive;
+        sample.weight = 0.0f;
+    return sample;
+}
+
+RayRecord shadow_ray(SurfacePoint point, LightSample sample) {
+    return ray_record(offset_origin(point.hit, sample.direction), sample.direction,
+                      sample.distance * 0.9999f);
+}
+
+/// Samples one light by selection probability; fills the vertex and returns the shadow ray
+/// (inactive when the light cannot contribute).
+RayRecord sample_light(const ShadeScene* scene, SurfacePoint point, LayerStackView stack,
+                       const LayerChoice* choice, Random4 u, VertexRecord* vertex,
+                       __global float* lobe_weights, __global float* colour) {
+    uint chosen;
+    Vec3 wi;
+    const LightSample sample = light_from_here(scene, point, u, &chosen, &wi, colour);
+    if (!(sample.weight > 0.0f))
+        return ray_record(vec3(0.0f, 0.0f, 0.0f), vec3(0.0f, 0.0f, 1.0f), -1.0f);
+    const LightRecord light = scene->lights[chosen];
     real scale = wi.z * sample.weight / light.selection;
     if (sample.pdf > 0.0f)
         scale *= lights_mis_weight(light.selection * sample.pdf,
                                    layer_stack_pdf(stack, choice, point.wo, wi));
     vertex->light = chosen;
     vertex->towards_light = direction_weights(stack, wi, point.wo, scale, lobe_weights);
-    return ray_record(offset_origin(point.hit, sample.direction), sample.direction,
-                      sample.distance * 0.9999f);
+    return shadow_ray(point, sample);
 }
 #endif
 
@@ -293,6 +315,49 @@ int end_on_emitter(const ShadeScene* scene, RayRecord ray, HitRecord hit, PathSt
     return 1;
 }
 
+#if FEATURE_WALK
+/// A walk at a vertex, connected to one light where lights are sampled; fills *vertex,
+/// *walk_vertex and *shadow (as it is when there is no light), and returns the ray along which the
+/// path goes on (inactive when it ends here). u_light: chooses light and direction, u: survival.
+RayRecord walk_from_here(const ShadeScene* scene, SurfacePoint point, Walk* walk, Random4 u_light,
+                         real u, uint depth, uint min_depth, VertexRecord* vertex,
+                         __global WalkVertexRecord* walk_vertex, PathState* state,
+                         __global RayRecord* shadow, __global float* colour) {
+    RayRecord ray = ray_record(vec3(0.0f, 0.0f, 0.0f), vec3(0.0f, 0.0f, 1.0f), -1.0f);
+    WalkArrival arrivals[WALK_PLACES];
+    walk_clear_arrivals(arrivals);
+    walk->arrivals = arrivals;
+#if FEATURE_LIGHT_SAMPLING
+    Vec3 wi;
+    uint chosen;
+    if (scene->light_count > 0u) {
+        const LightSample sample = light_from_here(scene, point, u_light, &chosen, &wi, colour);
+        if (sample.weight > 0.0f) {
+            vertex->light = chosen;
+            walk_light(walk->stack, wi, sample.weight / scene->lights[chosen].selection,
+                       &walk->random, arrivals);
+            *shadow = shadow_ray(point, sample);
+        }
+    }
+#endif
+    const WalkEnd end = walk_stack(walk, point.wo);
+    const Vec3 direction = sampling_to_world(point.frame, end.direction);
+    state->throughput *= end.expected;
+    const real survival =
+        depth + 1u < min_depth ? 1.0f : fmin(1.0f, fmax(state->throughput, 0.05f));
+    if (end.weight > 0.0f && u < survival && vec3_dot(point.geometric, direction) > 0.0f) {
+        vertex->has_next = 1u;
+        state->throughput /= survival;
+        state->bsdf_pdf = end.is_delta ? -1.0f : 0.0f; // 0: lights are left to the connections
+        ray = ray_record(offset_origin(point.hit, direction), direction, INFINITY);
+    }
+    const WalkVertexRecord record = {walk->writer.chunk, walk->writer.count, walk->reference,
+                                     end.weight / survival};
+    *walk_vertex = record;
+    return ray;
+}
+#endif
+
 __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
                     __global PathState* paths, __global VertexRecord* vertices,
                     __global RayRecord* shadow_rays, __global float* lobe_weights,
@@ -300,8 +365,11 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
                     __global const LayerRecord* layers, __global const LobeRecord* lobes,
                     __global const SurfaceRecord* surfaces, __global const TextureRecord* textures,
                     __global const LightRecord* lights, __global const float* tables,
-                    EnvironmentRecord image, uint path_count, uint capacity, uint depth,
-                    uint max_depth, uint min_depth, uint light_count, uint environment, uint seed) {
+                    __global const WalkPartRecord* walk_parts, __global WalkChunk* walk_chunks,
+                    __global uint* walk_chunks_used, __global WalkVertexRecord* walk_vertices,
+                    EnvironmentRecord image, uint walk_capacity, uint path_count, uint capacity,
+                    uint depth, uint max_depth, uint min_depth, uint light_count, uint environment,
+                    uint seed) {
     const uint path = (uint)get_global_id(0);
     if (path >= path_count)
         return;
@@ -332,7 +400,6 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
     stack.layers = layers + stack.record.first_layer;
     stack.lobes = lobes + stack.record.first_lobe;
     stack.choice = tables + stack.record.choice;
-    const LayerChoice choice = layer_stack_choice(stack, point.wo.z);
     __global float* next_lobes = lobe_weights + (size_t)slot * (2u * LOBES);
     VertexRecord vertex = empty_vertex();
     vertex.material = point.material;
@@ -350,14 +417,32 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
     }
 #endif
 
+    const Random4 u_light = random_4(state.pixel, state.sample, 2u * depth + 1u, seed);
+    const Random4 u = random_4(state.pixel, state.sample, 2u * depth + 2u, seed);
+    state.vertex_count = depth + 1u;
+#if FEATURE_WALK
+    if (stack.record.walk != NO_INDEX) {
+        Walk walk;
+        walk.stack.parts = walk_parts + stack.record.walk;
+        walk.stack.count = stack.record.layer_count;
+        walk.stack.sigma = stack.record.sigma;
+        walk.writer = walk_writer(walk_chunks, walk_chunks_used, walk_capacity);
+        walk.random = walk_random(state.pixel, state.sample,
+                                  WALK_DIMENSION + depth * WALK_DIMENSIONS_PER_VERTEX, seed);
+        rays[path] = walk_from_here(&scene, point, &walk, u_light, u.d, depth, min_depth, &vertex,
+                                    walk_vertices + slot, &state, shadow_rays + slot, colour);
+        vertices[slot] = vertex;
+        paths[path] = state;
+        return;
+    }
+#endif
+    const LayerChoice choice = layer_stack_choice(stack, point.wo.z);
 #if FEATURE_LIGHT_SAMPLING
     if (light_count > 0u)
-        shadow_rays[slot] = sample_light(&scene, point, stack, &choice,
-                                         random_4(state.pixel, state.sample, 2u * depth + 1u, seed),
-                                         &vertex, next_lobes + LOBES, colour);
+        shadow_rays[slot] = sample_light(&scene, point, stack, &choice, u_light, &vertex,
+                                         next_lobes + LOBES, colour);
 #endif
 
-    const Random4 u = random_4(state.pixel, state.sample, 2u * depth + 2u, seed);
     state.throughput *= choice.albedo;
     const real survival = depth + 1u < min_depth ? 1.0f : fmin(1.0f, fmax(state.throughput, 0.05f));
     if (u.d < survival) {
@@ -365,7 +450,6 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
                                       &state.bsdf_pdf);
         state.throughput /= survival;
     }
-    state.vertex_count = depth + 1u;
     vertices[slot] = vertex;
     paths[path] = state;
 }

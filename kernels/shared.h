@@ -183,8 +183,54 @@ typedef struct {
     shared_float lowest_ior;    ///< of the medium above the substrate, at the reference wavelength
     shared_uint first_diagonal; ///< oren-nayar: the substrate's own operator, like the others
     shared_uint first_factors, first_dense;
+    shared_uint walk; ///< walked through: the first of its layer_count + 1 parts; or NO_INDEX
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 92);
+ASSERT_SIZE(MaterialRecord, 96);
+
+/// Extinctions that distances in a scattering slab are sampled with (walk.h).
+#define WALK_REFERENCES 4
+
+/// A part of a stack that is walked through: an interface with the slab beneath it, or, as the last
+/// one, the substrate (of which only alpha and what follows it up to `reflectance` is used).
+typedef struct {
+    shared_float eta, ior; ///< IOR below over IOR above; IOR below
+    shared_float alpha;    ///< 0: smooth
+    shared_uint distribution;
+    shared_uint multiple;     ///< 1: light between facets is followed
+    shared_float albedo;      ///< substrate, or of scattering: guess for roulette, mean over lanes
+    shared_uint reflectance;  ///< conductor: [phase][node][lane] over the cosine at the facet
+    shared_uint extinction;   ///< [phase][lane], optical depth at normal passage; NO_INDEX: clear
+    shared_uint scattering;   ///< [phase][lane], its scattering part; NO_INDEX: none
+    shared_float anisotropy;  ///< mean cosine of scattering
+    shared_float least_depth; ///< of absorption over all lanes, for roulette
+    shared_float references[WALK_REFERENCES];
+} WalkPartRecord;
+ASSERT_SIZE(WalkPartRecord, 60);
+
+/// One step of a recorded walk: a kind in the upper 8 bits, an index below, and a number.
+typedef struct {
+    shared_uint code;
+    shared_float value;
+} WalkEvent;
+ASSERT_SIZE(WalkEvent, 8);
+
+/// Events of a walk are kept in chunks that point back to the one before.
+#define WALK_CHUNK_EVENTS 15
+typedef struct {
+    WalkEvent events[WALK_CHUNK_EVENTS];
+    shared_uint previous;
+    shared_uint padding;
+} WalkChunk;
+ASSERT_SIZE(WalkChunk, 128);
+
+/// What `gather` needs of a vertex that was walked through.
+typedef struct {
+    shared_uint chunk;     ///< the last one, or NO_INDEX
+    shared_uint count;     ///< events in it; those before are full
+    shared_uint reference; ///< which of WALK_REFERENCES distances were sampled with
+    shared_float weight;   ///< of the radiance along `next`
+} WalkVertexRecord;
+ASSERT_SIZE(WalkVertexRecord, 16);
 
 /// State of a path between stages.
 typedef struct {

@@ -134,8 +134,10 @@ DEVICE_FUNCTION TexturePoint texture_voronoi(TextureRecord texture, Vec3 p) {
     return point;
 }
 
+/// A floor at y = 0 lies between two layers of cubes: moved by a bit, rounding does not mix them.
 DEVICE_FUNCTION TexturePoint texture_checker(Vec3 p) {
-    const int sum = (int)floor(p.x) + (int)floor(p.y) + (int)floor(p.z);
+    const real bit = REAL(1e-4);
+    const int sum = (int)floor(p.x + bit) + (int)floor(p.y + bit) + (int)floor(p.z + bit);
     return texture_flat((real)(sum & 1));
 }
 

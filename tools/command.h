@@ -43,6 +43,12 @@ void add_info_command(CLI::App& program, CommandContext& context);
 void add_devices_command(CLI::App& program, CommandContext& context);
 void add_convert_command(CLI::App& program, CommandContext& context);
 void add_compare_command(CLI::App& program, CommandContext& context);
+void add_converge_command(CLI::App& program, CommandContext& context);
+void add_study_command(CLI::App& program, CommandContext& context);
+void add_merge_command(CLI::App& program, CommandContext& context);
+void add_synth_command(CLI::App& program, CommandContext& context);
+void add_colour_command(CLI::App& program, CommandContext& context);
+void add_fit_command(CLI::App& program, CommandContext& context);
 void add_classify_command(CLI::App& program, CommandContext& context);
 
 } // namespace reradiant

@@ -22,7 +22,13 @@ constexpr int exit_bad_input = 2;
 void add_commands(CLI::App& program, CommandContext& context) {
     add_render_command(program, context);
     add_measure_command(program, context);
+    add_synth_command(program, context);
+    add_colour_command(program, context);
+    add_fit_command(program, context);
     add_compare_command(program, context);
+    add_converge_command(program, context);
+    add_study_command(program, context);
+    add_merge_command(program, context);
     add_validate_command(program, context);
     add_info_command(program, context);
     add_classify_command(program, context);

@@ -7,9 +7,11 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 namespace reradiant {
 
@@ -57,10 +59,18 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
     request.phi_deg = options.phi;
     request.hemispherical = options.hemispherical;
     request.model = parse_model_option(options.model);
+    request.samples = options.samples;
+    request.seed = common.seed;
     if (!options.bands.empty()) {
         request.bands = parse_bands_option(options.bands);
     }
     check_output_folder(options.output);
+    // what computes in parallel asks the library how many threads there are
+    std::optional<tbb::global_control> threads;
+    if (common.threads > 0) {
+        threads.emplace(tbb::global_control::max_allowed_parallelism,
+                        static_cast<std::size_t>(common.threads));
+    }
     const Measurement measurement = measure_file(options, request);
     write_measurement(options.output, measurement);
     write_json(common.json, {{"model", model_name(measurement.model)},
@@ -102,10 +112,12 @@ void add_measure_command(CLI::App& program, CommandContext& context) {
         ->delimiter(',');
     command->add_flag("--hemispherical", options->hemispherical,
                       "directional-hemispherical matrix instead of the BRDF");
-    command->add_option("--model", options->model, "auto, adding or weidlich-wilkie");
+    command->add_option("--model", options->model, "auto, adding, weidlich-wilkie or walk");
     command->add_option("--bands", options->bands,
                         "FROM:TO:STEP of band centres in nm; default: the matrix's own grid");
-    command->add_option("--samples", options->samples, "paths per theta-i (model walk only)")
+    command
+        ->add_option("--samples", options->samples,
+                     "paths per theta-i (model walk only; default 65536), in blocks of 256")
         ->check(CLI::NonNegativeNumber);
     command->footer("Example: reradiant measure lacquer.toml -o lacquer.csv --theta-i 45 "
                     "--theta-o 0,20,60 --phi 180");

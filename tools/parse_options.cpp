@@ -95,4 +95,14 @@ void check_output_folder(const std::filesystem::path& output) {
                           "make it first, or write elsewhere");
 }
 
+std::filesystem::path output_directory(const std::filesystem::path& given) {
+    const std::filesystem::path folder = given.has_filename() ? given : given.parent_path();
+    check_output_folder(folder);
+    std::error_code ignored;
+    if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored))
+        throw_input_error({folder.string()}, "is a file, not a folder",
+                          "give the name of a folder");
+    return folder;
+}
+
 } // namespace reradiant

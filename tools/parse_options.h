@@ -1,5 +1,6 @@
 #pragma once
 
+#include "host/film/merge.h"
 #include "host/scene/scene.h"
 #include "host/spectral/grid.h"
 
@@ -19,13 +20,13 @@ Model parse_model_option(const std::string& text);
 /// --wavelengths comb[:N]: N, or 0 for one wavelength a film band.
 int parse_wavelengths_option(const std::string& text);
 
-struct SampleRange {
-    std::uint32_t first = 0, end = 0; ///< samples first .. end - 1
-};
 /// --sample-range A:B with A < B
 SampleRange parse_sample_range_option(const std::string& text);
 
 /// Refuses an output whose folder does not exist, before hours of work go into it.
 void check_output_folder(const std::filesystem::path& output);
+/// A folder to write results into, without a slash at its end. It need not exist, but the folder
+/// that it lies in must, and it must not be a file.
+std::filesystem::path output_directory(const std::filesystem::path& given);
 
 } // namespace reradiant

@@ -1,11 +1,14 @@
 #include "host/device/device.h"
 #include "host/error.h"
+#include "host/film/merge.h"
 #include "host/film/spectral_image.h"
+#include "host/render/render_identity.h"
 #include "host/render/renderer.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
 #include "host/scene/scene.h"
 #include "tools/command.h"
+#include "tools/interrupt.h"
 #include "tools/parse_options.h"
 
 #include <fmt/format.h>
@@ -13,13 +16,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <memory>
 #include <sys/resource.h>
 
 namespace reradiant {
 
 namespace {
+
+constexpr const char* render_identity_attribute = "reradiant:renderIdentity";
 
 struct RenderCommand {
     std::filesystem::path scene, output, png;
@@ -28,13 +32,16 @@ struct RenderCommand {
     std::string model = "auto", wavelengths = "comb", bands, variance, sample_range,
                 phase = "random";
     bool samples_given = false;
-};
 
-constexpr int exit_interrupted = 130;
-volatile std::sig_atomic_t interrupted = 0;
-void note_interrupt(int) {
-    interrupted = 1;
-}
+    /// Beside the image; none where the image goes to a device or pipe.
+    std::filesystem::path checkpoint_file() const {
+        std::error_code ignored;
+        if (std::filesystem::exists(output, ignored) &&
+            !std::filesystem::is_regular_file(output, ignored))
+            return {};
+        return output.string() + ".checkpoint";
+    }
+};
 
 std::uint64_t peak_memory_bytes() {
     rusage usage{};
@@ -55,12 +62,15 @@ nlohmann::ordered_json statistics_json(const RenderResult& result, const Device&
     for (const RenderProgress& pass : result.passes)
         passes.push_back({{"spp", pass.samples},
                           {"seconds", pass.seconds},
-                          {"relmse", finite_or_null(pass.relmse)}});
+                          {"relmse", finite_or_null(pass.relmse)},
+                          {"relmse_low", pass.relmse_low},
+                          {"relmse_high", finite_or_null(pass.relmse_high)}});
     nlohmann::ordered_json features;
     for (const auto& [name, on] : result.features)
         features[name] = on ? "on" : "off";
     return {
         {"spp", result.samples},
+        {"resumed_spp", result.resumed_samples},
         {"seconds",
          {{"setup", result.setup_seconds},
           {"build", result.build_seconds},
@@ -108,6 +118,11 @@ void describe_image(RenderResult& result, const Scene& scene, const Device& devi
     attributes["reradiant:seed"] = std::to_string(command.render.seed);
     attributes["reradiant:firstSample"] = std::to_string(command.render.first_sample);
     attributes["reradiant:samples"] = std::to_string(result.samples);
+    attributes[sample_ranges_attribute] = sample_ranges_text(
+        {{command.render.first_sample, command.render.first_sample + result.samples}});
+    attributes[sampling_attribute] = identity_text(sampling_identity(scene, command.render));
+    attributes[render_identity_attribute] =
+        identity_digest(render_identity(scene, device, command.render));
     attributes["reradiant:device"] = device.info().name;
     attributes["reradiant:commandLine"] = context.command_line;
     if (result.non_finite > 0)
@@ -151,6 +166,29 @@ void print_summary(const RenderResult& result, const RenderCommand& command) {
     fmt::print("left out: {}\n", fmt::join(result.left_out, "; "));
 }
 
+/// Whether the output is this render already, with as many samples.
+bool is_done(const RenderCommand& command, const Scene& scene, const Device& device) {
+    std::error_code ignored;
+    if (!command.render.resume || std::filesystem::exists(command.checkpoint_file(), ignored) ||
+        !std::filesystem::is_regular_file(command.output, ignored))
+        return false;
+    const SpectralImage image = read_spectral_exr(command.output);
+    const auto& attributes = image.attributes;
+    const auto identity = attributes.find(render_identity_attribute);
+    const auto samples = attributes.find("reradiant:samples");
+    return identity != attributes.end() && samples != attributes.end() &&
+           identity->second == identity_digest(render_identity(scene, device, command.render)) &&
+           samples->second == std::to_string(command.render.samples);
+}
+
+int report_interruption(const RenderResult& result, const RenderCommand& command) {
+    fmt::print(stderr, "interrupted after {} samples a pixel; {}\n", result.samples,
+               command.render.checkpoint.empty() ? "nothing was written"
+                                                 : fmt::format("{} holds them, --resume goes on",
+                                                               command.render.checkpoint.string()));
+    return exit_interrupted;
+}
+
 int run_render(RenderCommand command, const CommandContext& context) {
     const CommonOptions& common = context.common;
     apply_texts(command, common);
@@ -158,8 +196,14 @@ int run_render(RenderCommand command, const CommandContext& context) {
     const Scene scene = load_scene(command.scene);
     prepare_opencl(common.threads);
     const Device device(common.device);
-    std::signal(SIGINT, note_interrupt);
-    std::signal(SIGTERM, note_interrupt);
+    command.render.checkpoint = command.checkpoint_file();
+    if (is_done(command, scene, device)) {
+        if (!common.quiet)
+            fmt::print("{}: is this render already, with {} samples a pixel\n",
+                       command.output.string(), command.render.samples);
+        return 0;
+    }
+    catch_interrupts(); // the pass ends and a checkpoint is written
     RenderResult result;
     {
         ProgressBar bar(common.quiet);
@@ -168,9 +212,11 @@ int run_render(RenderCommand command, const CommandContext& context) {
             const double by_time = state.seconds / command.render.time_seconds;
             bar.update(std::min(1.0, std::max(by_samples, by_time)),
                        fmt::format("{} spp, relMSE {:.2g}", state.samples, state.relmse));
-            return interrupted == 0;
+            return !interrupt_requested();
         });
     }
+    if (result.interrupted)
+        return report_interruption(result, command);
     describe_image(result, scene, device, command, context);
     write_spectral_exr(command.output, result.image, command.display.exposure_ev);
     if (!command.png.empty()) {
@@ -184,7 +230,7 @@ int run_render(RenderCommand command, const CommandContext& context) {
         write_json(common.json, statistics_json(result, device, command));
     if (!common.quiet)
         print_summary(result, command);
-    return interrupted ? exit_interrupted : 0;
+    return 0;
 }
 
 void add_stopping_options(CLI::App& app, RenderCommand& command) {
@@ -197,6 +243,12 @@ void add_stopping_options(CLI::App& app, RenderCommand& command) {
         ->check(CLI::PositiveNumber);
     app.add_option("--sample-range", command.sample_range,
                    "only samples A to B - 1 of every pixel, as A:B");
+    app.add_option("--checkpoint", command.render.checkpoint_seconds,
+                   "write OUT.exr.checkpoint every so many seconds")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_flag("--resume", command.render.resume,
+                 "go on from OUT.exr.checkpoint where it exists");
     app.add_option("--memory-limit", command.render.memory_limit_bytes,
                    "refuse a render that would take more bytes (default: 80 % of the machine's)");
 }

@@ -1,5 +1,6 @@
 #include "host/error.h"
 #include "host/film/colour_image.h"
+#include "host/film/display_picture.h"
 #include "host/film/png.h"
 #include "host/film/spectral_image.h"
 
@@ -175,16 +176,22 @@ std::vector<std::uint8_t> quantise(const std::vector<float>& display, std::size_
 
 } // namespace
 
-std::size_t write_display_png(const std::filesystem::path& file, const SpectralImage& image,
-                              const DisplayOptions& options) {
+DisplayPicture display_picture(const SpectralImage& image, const DisplayOptions& options) {
     const DisplayProcessor display = display_processor(options);
     std::vector<float> pixels = exposed_xyz(image, options.exposure_ev);
     OCIO::PackedImageDesc description(pixels.data(), image.width, image.height, 3);
     display.processor->apply(description);
-    std::size_t out_of_gamut = 0;
-    const std::vector<std::uint8_t> codes = quantise(pixels, out_of_gamut);
-    write_png(file, image.width, image.height, codes, display.is_srgb);
-    return out_of_gamut;
+    DisplayPicture picture;
+    picture.is_srgb = display.is_srgb;
+    picture.rgb = quantise(pixels, picture.out_of_gamut);
+    return picture;
+}
+
+std::size_t write_display_png(const std::filesystem::path& file, const SpectralImage& image,
+                              const DisplayOptions& options) {
+    const DisplayPicture picture = display_picture(image, options);
+    write_png(file, image.width, image.height, picture.rgb, picture.is_srgb);
+    return picture.out_of_gamut;
 }
 
 } // namespace reradiant

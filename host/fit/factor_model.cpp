@@ -1,6 +1,7 @@
 #include "host/fit/factor_model.h"
 
-#include <ceres/ceres.h>
+#include <ceres/cost_function.h>
+#include <ceres/problem.h>
 
 #include <algorithm>
 #include <cmath>
@@ -186,17 +187,34 @@ Matrix FactorModel::excitation_coefficients(const Vector& parameters) const {
                                       excitation_.size(), rank_);
 }
 
-Matrix FactorModel::emission(const Vector& parameters) const {
-    return emission_.values * emission_coefficients(parameters);
-}
-
-Matrix FactorModel::excitation(const Vector& parameters) const {
-    return excitation_.values * excitation_coefficients(parameters);
+FactorCurves FactorModel::curves(const Vector& parameters) const {
+    return {emission_.values * emission_coefficients(parameters),
+            excitation_.values * excitation_coefficients(parameters)};
 }
 
 Matrix FactorModel::matrix(const Vector& parameters) const {
-    return (emission(parameters) * excitation(parameters).transpose())
-        .cwiseProduct(target_.allowed);
+    const FactorCurves both = curves(parameters);
+    return (both.emission * both.excitation.transpose()).cwiseProduct(target_.allowed);
+}
+
+Matrix FactorModel::entry_jacobian(const Vector& parameters) const {
+    const FactorCurves both = curves(parameters);
+    const Eigen::Index rows = target_.value.rows(), split = emission_.size() * rank_;
+    Matrix jacobian = Matrix::Zero(target_.value.size(), parameters.size());
+    for (Eigen::Index i = 0; i < target_.value.cols(); ++i)
+        for (Eigen::Index o = 0; o < rows; ++o) {
+            if (target_.allowed(o, i) == 0.0)
+                continue;
+            auto row = jacobian.row(o + i * rows);
+            for (Eigen::Index a = 0; a < emission_.size(); ++a)
+                if (emission_.values(o, a) != 0.0)
+                    row.segment(a * rank_, rank_) = emission_.values(o, a) * both.excitation.row(i);
+            for (Eigen::Index b = 0; b < excitation_.size(); ++b)
+                if (excitation_.values(i, b) != 0.0)
+                    row.segment(split + b * rank_, rank_) =
+                        excitation_.values(i, b) * both.emission.row(o);
+        }
+    return jacobian;
 }
 
 Vector FactorModel::parameters(const Matrix& emission_coefficients,

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/fit/fit_target.h"
-#include "host/fit/non_negative_solver.h"
+#include "host/fit/fitted_model.h"
 #include "host/fit/photon_penalty.h"
 #include "host/fit/robust_loss.h"
 #include "host/fit/smooth_basis.h"
@@ -11,7 +11,7 @@ namespace reradiant {
 /// Model `factors`: entry (o, i) = allowed(o, i) sum_k e_k(o) x_k(i) with e = emission basis times
 /// coefficients, x likewise, all coefficients non-negative. One parameter block holds the K
 /// coefficients of one basis function: first the emission's, then the excitation's.
-class FactorModel final : public NonNegativeModel {
+class FactorModel final : public TermModel {
 public:
     FactorModel(const FitTarget& target, int rank, const SmoothBasis& emission,
                 const SmoothBasis& excitation, const PhotonPenalty& penalty, RobustLoss loss);
@@ -20,14 +20,17 @@ public:
     void add_residuals(ceres::Problem& problem, const std::vector<double*>& blocks) const override;
     LinearAlgebra linear_algebra() const override;
 
-    int rank() const { return rank_; }
-    const SmoothBasis& emission_basis() const { return emission_; }
-    const SmoothBasis& excitation_basis() const { return excitation_; }
-    /// Curves on the bands, (emission bands, K) and (excitation bands, K).
-    Eigen::MatrixXd emission(const Eigen::VectorXd& parameters) const;
-    Eigen::MatrixXd excitation(const Eigen::VectorXd& parameters) const;
-    /// The matrix, (emission, excitation), in units of the target's scale.
-    Eigen::MatrixXd matrix(const Eigen::VectorXd& parameters) const;
+    FactorCurves curves(const Eigen::VectorXd& parameters) const override;
+    Eigen::MatrixXd matrix(const Eigen::VectorXd& parameters) const override;
+    Eigen::MatrixXd entry_jacobian(const Eigen::VectorXd& parameters) const override;
+    int terms() const override { return rank_; }
+    int term_of(Eigen::Index parameter) const override {
+        return static_cast<int>(parameter % rank_);
+    }
+    int free_units() const override { return 1; }
+    std::size_t stored_numbers() const override {
+        return static_cast<std::size_t>(rank_ * (emission_.size() + excitation_.size()));
+    }
     Eigen::VectorXd parameters(const Eigen::MatrixXd& emission_coefficients,
                                const Eigen::MatrixXd& excitation_coefficients) const;
     /// Coefficients, (functions, K).

@@ -1,6 +1,10 @@
 #include "host/fit/non_negative_solver.h"
 
-#include <ceres/ceres.h>
+#include <ceres/crs_matrix.h>
+#include <ceres/manifold.h>
+#include <ceres/ordered_groups.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
 #include <fmt/format.h>
 
 #include <algorithm>

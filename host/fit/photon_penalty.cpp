@@ -19,7 +19,7 @@ bool PhotonPenalty::update(const Eigen::VectorXd& sums, const Eigen::VectorXd& b
     bool violated = false;
     for (Eigen::Index i = 0; i < sums.size(); ++i) {
         const double excess = sums(i) - budget(i);
-        const bool over = excess > tolerance * std::max(budget(i), 1e-6);
+        const bool over = excess > tolerance;
         violated = violated || over;
         if (strength(i) > 0.0) {
             multiplier(i) = std::max(0.0, multiplier(i) + strength(i) * excess);

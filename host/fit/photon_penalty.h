@@ -17,7 +17,7 @@ struct PhotonPenalty {
     double residual(Eigen::Index column, double excess) const;
     double slope(Eigen::Index column, double excess) const;
     /// After a solve: new multipliers, and a strength for columns that newly exceed their budget.
-    /// True when some column exceeds it by more than `tolerance` of it.
+    /// True when some column exceeds it by more than `tolerance` (in the units of `sums`).
     bool update(const Eigen::VectorXd& sums, const Eigen::VectorXd& budget, double first_strength,
                 double tolerance);
 };

@@ -49,6 +49,7 @@ void AngularSystem::add_slab(const LayerValues& layer) {
         scattering_slab(grid, layer.tau, layer.tau_scattering, layer.anisotropy);
     Scatterer scatterer{grid, grid, Eigen::MatrixXd(2 * grid.cells(), 2 * grid.cells())};
     scatterer.response << slab.back, slab.through, slab.through, slab.back;
+    scatterer.depth = layer.tau + layer.tau_scattering;
     scatterers_.push_back(std::move(scatterer));
 }
 
@@ -105,6 +106,14 @@ Eigen::MatrixXd AngularSystem::coupling(const SubstratePile& substrate) const {
     return k;
 }
 
+namespace {
+
+AngularShares shares_of(const Eigen::MatrixXd& values) {
+    return {values.col(0), values.col(1), values.col(2)};
+}
+
+} // namespace
+
 AngularResponse AngularSystem::solve(const SubstrateWeight& weight) const {
     const SubstratePile substrate = substrate_pile(bottom_media_, scatterers_.back().lower, weight);
     const Eigen::Index n = size();
@@ -133,9 +142,12 @@ AngularResponse AngularSystem::solve(const SubstrateWeight& weight) const {
     const bool coupled = (links.array() != 0.0).any();
     const Eigen::MatrixXd values = coupled ? system.partialPivLu().solve(incoming) : incoming;
     AngularResponse response;
-    response.to_substrate = values.col(0).head(first_upper);
-    response.to_air = values.col(1).head(first_upper);
-    response.lost = values.col(2).head(first_upper);
+    response.incoming = shares_of(values.topRows(first_upper));
+    if (scatterers_.front().depth > 0.0) {
+        const Eigen::Index below = scatterers_.front().lower.cells();
+        response.passed = shares_of(outgoing.middleRows(first_upper, below) +
+                                    links.middleRows(first_upper, below) * values);
+    }
     response.internal_reflectance =
         substrate.emitted_back + substrate.emitted.dot(values.col(0).tail(last_lower));
     response.escape = substrate.emitted.dot(values.col(1).tail(last_lower));

@@ -13,12 +13,20 @@ namespace reradiant {
 /// the operators resolve (5e-5 of IOR; below that it neither reflects nor deflects visibly).
 bool is_rough_interface(const StackValues& stack, std::size_t index);
 
-/// What becomes of light that comes down to the first scatterer, by cell of its upper side, and of
-/// light that the substrate emits; the substrate itself is black.
-struct AngularResponse {
+/// What becomes of light, by cell of direction; the substrate is black.
+struct AngularShares {
     Eigen::VectorXd to_substrate; ///< share that reaches the substrate
     Eigen::VectorXd to_air;       ///< share that leaves again into the air
     Eigen::VectorXd lost;         ///< share lost to single scattering
+};
+
+/// What becomes of light that comes down to the first scatterer, by cell of its upper side, and of
+/// light that the substrate emits.
+struct AngularResponse {
+    AngularShares incoming;
+    /// Of light that leaves a slab downwards that is the first scatterer, by the same cells; empty
+    /// for a rough interface.
+    AngularShares passed;
     double internal_reflectance = 0.0;
     double escape = 0.0; ///< share of the substrate's flux that leaves into the air
 };
@@ -37,6 +45,8 @@ public:
     /// Media and slabs from the air to the medium above the first scatterer.
     const SmoothStack& top() const { return top_media_; }
     const AngularGrid& top_grid() const { return scatterers_.front().upper; }
+    /// Optical depth, scattering included, of a slab that is the first scatterer; else 0.
+    double top_depth() const { return scatterers_.front().depth; }
     /// Reflection lobe of a rough interface that is the first scatterer, mean over each cell of its
     /// upper side. Only known for one towards a denser medium, else empty.
     const Eigen::VectorXd& first_lobe() const { return first_lobe_; }
@@ -48,6 +58,7 @@ private:
         AngularGrid upper, lower;
         Eigen::MatrixXd response;
         bool loses = false; ///< what the response lacks is lost, not absorbed
+        double depth = 0.0; ///< of a slab, scattering included
     };
 
     void add_interface(const StackValues& stack, std::size_t index);

@@ -27,6 +27,43 @@ std::shared_ptr<const CellFit> fit_of(const AngularGrid& grid) {
     return fit;
 }
 
+/// A share as a function of the cosine above the first scatterer, fitted to its cells. Beneath a
+/// slab's top it is exp(-d / c) p(c) + (1 - exp(-d / c)) s(c), d the slab's depth, p of what passes
+/// unscattered, s of the rest: a thin slab's 1 / c is no polynomial, and a fit of it rings.
+class ShareFit {
+public:
+    ShareFit() = default;
+    ShareFit(std::shared_ptr<const CellFit> fit, const Eigen::VectorXd& share)
+        : fit_(std::move(fit)), scattered_(fit_->coefficients(share)) {}
+    ShareFit(std::shared_ptr<const CellFit> fit, const AngularGrid& grid, double depth,
+             const Eigen::VectorXd& share, const Eigen::VectorXd& passed)
+        : fit_(std::move(fit)), depth_(depth), passed_(fit_->coefficients(passed)) {
+        Eigen::VectorXd rest(share.size());
+        for (Eigen::Index j = 0; j < rest.size(); ++j) {
+            // the mean of 1 / c over the cell's flux, as in the slab's operator
+            const auto k = static_cast<std::size_t>(j);
+            const double lost = -std::expm1(-2.0 * depth / (grid.edges[k] + grid.edges[k + 1]));
+            rest(j) = passed(j) + (share(j) - passed(j)) / lost;
+        }
+        scattered_ = fit_->coefficients(rest);
+    }
+
+    double operator()(double c) const {
+        const double rest = fit_->evaluate(scattered_, c);
+        if (depth_ == 0.0) {
+            return rest;
+        }
+        const double lost = c > 0.0 ? -std::expm1(-depth_ / c) : 1.0;
+        const double passed = fit_->evaluate(passed_, c);
+        return passed + lost * (rest - passed);
+    }
+
+private:
+    std::shared_ptr<const CellFit> fit_;
+    double depth_ = 0.0;
+    Eigen::VectorXd passed_, scattered_;
+};
+
 /// Scattering counted as absorption: what is left was not scattered.
 StackValues without_scattered(StackValues stack) {
     for (LayerValues& layer : stack) {
@@ -48,9 +85,16 @@ public:
         }
         lobe_top_ = smooth_media(unscattered_, 0, first_rough_);
         const AngularResponse response = system_.solve();
-        substrate_ = fit_->coefficients(response.to_substrate);
-        air_ = fit_->coefficients(response.to_air);
-        lost_ = fit_->coefficients(response.lost);
+        const auto fitted = [&](Eigen::VectorXd AngularShares::*share) {
+            return system_.top_depth() > 0.0
+                       ? ShareFit(fit_, system_.top_grid(), system_.top_depth(),
+                                  response.incoming.*share, response.passed.*share)
+                       : ShareFit(fit_, response.incoming.*share);
+        };
+        substrate_ = fitted(&AngularShares::to_substrate);
+        air_ = fitted(&AngularShares::to_air);
+        lost_ = fitted(&AngularShares::lost);
+        air_cells_ = response.incoming.to_air;
         internal_reflectance_ = std::clamp(response.internal_reflectance, 0.0, 1.0);
         make_reciprocal(response.escape);
         make_lobes();
@@ -99,11 +143,11 @@ private:
             return {0.0, in.reflection_down, 0.0};
         }
         const double inside = inner_cosine(top_, c);
-        const double raw = std::clamp(fit_->evaluate(substrate_, inside), 0.0, 1.0);
+        const double raw = std::clamp(substrate_(inside), 0.0, 1.0);
         const double to_substrate = reciprocity_ * raw;
         // the correction moves light between the two, so that nothing is created
-        const double to_air = std::max(fit_->evaluate(air_, inside) + (raw - to_substrate), 0.0);
-        const double lost = std::max(fit_->evaluate(lost_, inside), 0.0);
+        const double to_air = std::max(air_(inside) + (raw - to_substrate), 0.0);
+        const double lost = std::max(lost_(inside), 0.0);
         return {in.transmission * to_substrate, in.reflection_down + in.transmission * to_air,
                 in.transmission * lost};
     }
@@ -150,12 +194,14 @@ private:
             return AngularSystem(unscattered_, count);
         };
         std::size_t k = first_rough_;
-        lobe_fit_ = fit_of(cut_system(k + 1).top_grid());
+        const AngularGrid grid = cut_system(k + 1).top_grid();
+        lobe_fit_ = fit_of(grid);
         const auto cut_albedo = [&](std::size_t count) {
             const bool whole = count == stack_.size() && unscattered_ == stack_;
-            return whole ? air_ : lobe_fit_->coefficients(cut_system(count).solve().to_air);
+            return lobe_fit_->coefficients(whole ? air_cells_
+                                                 : cut_system(count).solve().incoming.to_air);
         };
-        Eigen::VectorXd above = Eigen::VectorXd::Zero(air_.size());
+        Eigen::VectorXd above = lobe_fit_->coefficients(Eigen::VectorXd::Zero(grid.cells()));
         if (top_rough_) {
             set_top_lobe();
             ++k;
@@ -234,7 +280,8 @@ private:
     bool top_rough_ = false;
     double reciprocity_ = 1.0;
     double internal_reflectance_ = 0.0, residual_average_ = 0.0;
-    Eigen::VectorXd substrate_, air_, lost_, top_lobe_;
+    ShareFit substrate_, air_, lost_;
+    Eigen::VectorXd air_cells_, top_lobe_;
     std::vector<double> breaks_;
     std::vector<Lobe> lobes_;
     std::vector<LobeTables> tables_;

@@ -1,7 +1,7 @@
 #include "host/layers/interface_walk.h"
 
+#include "host/layers/microsurface.h"
 #include "kernels/fresnel.h"
-#include "kernels/microfacet.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,14 +24,7 @@ double hashed_uniform(unsigned walk, unsigned stream, unsigned dimension) {
     return state * 0x1p-32;
 }
 
-double lambda_of(int distribution, double alpha, const Vec3& w) {
-    // at grazing Lambda is infinite; the bound keeps 0 * inf out and changes nothing visible
-    return kernels::microfacet_lambda_cos(distribution, alpha, w) / std::max(w.z, 1e-12);
-}
-
-Vec3 negated(const Vec3& v) {
-    return kernels::vec3(-v.x, -v.y, -v.z);
-}
+using microsurface::negated;
 
 /// What one facet does to light that came from direction v (pointing away from the surface).
 struct Facet {
@@ -63,7 +56,7 @@ double scatter_once(const RoughInterface& interface, double eta, const Vec3& wi,
     }
     const Facet facet = facet_response(wi, h, eta);
     const bool blinn = interface.distribution == Distribution::Blinn;
-    const double lambda_i = blinn ? 0.0 : lambda_of(distribution, interface.alpha, wi);
+    const double lambda_i = blinn ? 0.0 : microsurface::lambda(distribution, interface.alpha, wi);
     // share of the sampled facet's light that gets out: G2 over what the sampling accounts for
     const auto visible = [&](const Vec3& wo, double cos_o) {
         if (blinn) {
@@ -71,7 +64,8 @@ double scatter_once(const RoughInterface& interface, double eta, const Vec3& wi,
                 {1.0, 2.0 * h.z * wo.z / std::max(cos_o, 1e-300), 2.0 * h.z * wi.z / cos_i});
             return g * cos_i / (wi.z * h.z);
         }
-        return (1.0 + lambda_i) / (1.0 + lambda_i + lambda_of(distribution, interface.alpha, wo));
+        return (1.0 + lambda_i) /
+               (1.0 + lambda_i + microsurface::lambda(distribution, interface.alpha, wo));
     };
     double reflected = 0.0;
     if (facet.reflected.z > 0.0) {
@@ -115,11 +109,10 @@ public:
     }
 
 private:
-    double lambda(const Vec3& w) const { return lambda_of(distribution_, alpha_, w); }
+    double lambda(const Vec3& w) const { return microsurface::lambda(distribution_, alpha_, w); }
 
-    /// Probability that a ray from `height` in direction w (same frame) leaves the surface.
     double escape(const Vec3& w, double height) const {
-        return w.z > 0.0 ? std::exp(lambda(w) * std::log(height)) : 0.0;
+        return microsurface::escape(distribution_, alpha_, w, height);
     }
 
     /// Scores both branches' departures and goes on along one of them.
@@ -163,16 +156,8 @@ private:
         return true;
     }
 
-    /// Height of the next facet on a ray that meets one (Heitz et al. 2016 eq. 19, conditional).
     void advance(const Vec3& w, double height, double u) {
-        if (w.z > 0.0) {
-            const double l = std::max(lambda(w), 1e-12);
-            const double hit = -std::expm1(l * std::log(height));
-            height_ = std::min(height * std::exp(-std::log1p(-u * hit) / l), 1.0);
-        } else {
-            height_ = height * std::pow(1.0 - u, 1.0 / (1.0 + lambda(negated(w))));
-        }
-        height_ = std::clamp(height_, 1e-300, 1.0 - 1e-16);
+        height_ = microsurface::next_height(distribution_, alpha_, w, height, u);
         v_ = negated(w);
     }
 

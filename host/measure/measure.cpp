@@ -3,6 +3,8 @@
 #include "host/error.h"
 #include "host/measure/surface_angles.h"
 #include "host/measure/surface_model.h"
+#include "host/measure/walk_measurement.h"
+#include "host/scene/model_choice.h"
 
 #include <fmt/format.h>
 
@@ -34,10 +36,6 @@ void check_request(const MeasureRequest& request) {
         check(request.phi_deg, "phi", -360.0, 360.0 + 1e-9,
               "azimuths lie between -360 and 360 degrees");
     }
-    if (request.model == Model::Walk) {
-        throw_input_error({}, "the model walk is not available in this version",
-                          "use adding or weidlich-wilkie");
-    }
 }
 
 double radians(double degrees) {
@@ -49,56 +47,48 @@ class RowWriter {
 public:
     RowWriter(Measurement& measurement, const SurfaceModel& surface)
         : measurement_(measurement), surface_(surface), bands_(measurement.bands.count),
-          fluorescent_(!Eigen::MatrixXd(surface.centre()).isDiagonal(0.0)) {}
+          fluorescent_(!Eigen::MatrixXd(surface.coupling()).isDiagonal(0.0)) {}
 
     void directional(double theta_i, double theta_o, double phi) {
         const kernels::Vec3 wi = direction_at(std::cos(radians(theta_i)), 0.0);
         const kernels::Vec3 wo = direction_at(std::cos(radians(theta_o)), radians(phi));
-        std::vector<double> in, out;
-        for (int band = 0; band < bands_; ++band) {
-            in.push_back(surface_.way_in(band, wi, wo));
-            out.push_back(surface_.way_out(band, wi, wo));
-        }
-        const auto row = [&](int i, int o, double value, MeasuredPart part) {
-            add({theta_i, theta_o, phi, nm(i), nm(o), value, 0.0, part});
-        };
-        for_pairs([&](int i, int o, double centre) {
-            const double value =
-                out[static_cast<std::size_t>(o)] * centre * in[static_cast<std::size_t>(i)];
-            row(i, o, value, MeasuredPart::Diffuse);
-        });
-        for (int band = 0; band < bands_; ++band) {
-            row(band, band, surface_.specular(band, wi, wo), MeasuredPart::Specular);
-        }
+        MeasureRow row{theta_i, theta_o, phi, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
+        diffuse(row, surface_.diffuse(wi, wo));
+        specular(row, [&](int band) { return surface_.specular(band, wi, wo); });
     }
 
     void hemispherical(double theta_i) {
         const double c = std::cos(radians(theta_i));
-        const Eigen::MatrixXd diffuse = surface_.hemispherical_diffuse(c);
-        const auto row = [&](int i, int o, double value, MeasuredPart part) {
-            add({theta_i, 0.0, 0.0, nm(i), nm(o), value, 0.0, part});
-        };
-        for_pairs([&](int i, int o, double) { row(i, o, diffuse(o, i), MeasuredPart::Diffuse); });
-        for (int band = 0; band < bands_; ++band) {
-            row(band, band, surface_.hemispherical_specular(band, c), MeasuredPart::Specular);
-        }
+        MeasureRow row{theta_i, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
+        diffuse(row, surface_.hemispherical_diffuse(c));
+        specular(row, [&](int band) { return surface_.hemispherical_specular(band, c); });
     }
 
 private:
-    double nm(int band) const { return measurement_.bands.centre_nm(band); }
-    void add(const MeasureRow& row) { measurement_.rows.push_back(row); }
+    void add(MeasureRow row, int i, int o, double value, MeasuredPart part) {
+        row.lambda_i_nm = measurement_.bands.centre_nm(i);
+        row.lambda_o_nm = measurement_.bands.centre_nm(o);
+        row.value = value;
+        row.part = part;
+        measurement_.rows.push_back(row);
+    }
 
-    /// Every (excitation, emission, matrix entry) that can hold something: the diagonal, Stokes
-    /// shifts, and others where they are not zero.
-    template <typename Visit>
-    void for_pairs(const Visit& visit) const {
-        const Eigen::MatrixXd& centre = surface_.centre();
+    /// Every (excitation, emission) that can hold something: the diagonal, Stokes shifts, and
+    /// others where they are not zero.
+    void diffuse(const MeasureRow& row, const Eigen::MatrixXd& values) {
+        const Eigen::MatrixXd& coupling = surface_.coupling();
         for (int i = 0; i < bands_; ++i) {
             for (int o = 0; o < bands_; ++o) {
-                if (o == i || (fluorescent_ && (o > i || centre(o, i) != 0.0))) {
-                    visit(i, o, centre(o, i));
+                if (o == i || (fluorescent_ && (o > i || coupling(o, i) != 0.0))) {
+                    add(row, i, o, values(o, i), MeasuredPart::Diffuse);
                 }
             }
+        }
+    }
+    template <typename Value>
+    void specular(const MeasureRow& row, const Value& value) {
+        for (int band = 0; band < bands_; ++band) {
+            add(row, band, band, value(band), MeasuredPart::Specular);
         }
     }
 
@@ -113,15 +103,17 @@ void add_notes(Measurement& measurement, const SurfaceModel& surface,
     double delta = 0.0, lost = 0.0;
     for (const double theta : request.theta_i_deg) {
         for (int band = 0; band < measurement.bands.count; ++band) {
-            delta = std::max(delta, surface.specular_delta(band, std::cos(radians(theta))));
-            lost = std::max(lost, surface.lost(band, std::cos(radians(theta))));
+            const double c = std::cos(radians(theta));
+            delta =
+                std::max(delta, surface.specular_delta(band, c) + surface.substrate_delta(band, c));
+            lost = std::max(lost, surface.lost(band, c));
         }
     }
     if (delta > 0.0) {
         measurement.notes.push_back(
             request.hemispherical
-                ? "specular rows include the mirror reflection of smooth interfaces"
-                : fmt::format("the mirror reflection of smooth interfaces (weight up to {:.9g}) is "
+                ? "the rows include the mirror reflection of smooth surfaces"
+                : fmt::format("the mirror reflection of smooth surfaces (weight up to {:.9g}) is "
                               "a delta and left out of these directional rows",
                               delta));
     }
@@ -149,16 +141,20 @@ WavelengthGrid bands_of(const Material& material, const MeasureRequest& request)
 
 } // namespace
 
-Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_band,
-                          const WavelengthGrid& bands, const MeasureRequest& request) {
+Measurement measure_substrate(const LayerStack& stack, const MeasuredSubstrate& substrate,
+                              const WavelengthGrid& bands, const MeasureRequest& request) {
     check_request(request);
+    if (request.model == Model::Walk) {
+        return measure_by_walk(stack, substrate, bands, request);
+    }
     Measurement measurement;
     measurement.bands = bands;
     measurement.hemispherical = request.hemispherical;
     measurement.model = request.model == Model::Auto ? Model::Adding : request.model;
     const std::unique_ptr<SurfaceModel> surface =
-        measurement.model == Model::WeidlichWilkie ? weidlich_wilkie_surface(stack, per_band, bands)
-                                                   : adding_surface(stack, per_band, bands);
+        measurement.model == Model::WeidlichWilkie
+            ? weidlich_wilkie_surface(stack, substrate, bands)
+            : adding_surface(stack, substrate, bands);
     RowWriter writer(measurement, *surface);
     for (const double theta_i : request.theta_i_deg) {
         if (request.hemispherical) {
@@ -175,18 +171,39 @@ Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_ba
     return measurement;
 }
 
+Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_band,
+                          const WavelengthGrid& bands, const MeasureRequest& request) {
+    return measure_substrate(stack, {per_band, 0.0, {}}, bands, request);
+}
+
+MeasuredSubstrate measured_substrate(const Substrate& substrate, const WavelengthGrid& bands) {
+    MeasuredSubstrate measured;
+    if (substrate.type == SubstrateType::Conductor) {
+        for (const double nm : bands.centres_nm()) {
+            measured.conductor.push_back(conductor_at(substrate.conductor, nm));
+        }
+        return measured;
+    }
+    measured.sigma = substrate.type == SubstrateType::OrenNayar ? substrate.sigma : 0.0;
+    measured.matrix = substrate.fluorescence_on(bands);
+    for (int band = 0; band < bands.count; ++band) {
+        measured.matrix(band, band) += substrate.reflectance(bands.centre_nm(band));
+    }
+    return measured;
+}
+
 Measurement measure_material(const Material& material, const MeasureRequest& request) {
     MeasureRequest resolved = request;
-    if (resolved.model == Model::Auto) {
-        resolved.model = material.model;
-    }
+    const ModelChoice choice = choose_model(material, request.model, ModelUse::Measure);
+    resolved.model = choice.model;
     check_request(resolved);
     const WavelengthGrid bands = bands_of(material, request);
-    Eigen::MatrixXd per_band = material.substrate.fluorescence_on(bands);
-    for (int band = 0; band < bands.count; ++band) {
-        per_band(band, band) += material.substrate.reflectance(bands.centre_nm(band));
+    Measurement measurement = measure_substrate(
+        material.stack, measured_substrate(material.substrate, bands), bands, resolved);
+    if (!choice.reason.empty()) {
+        measurement.notes.insert(measurement.notes.begin(), choice.reason);
     }
-    return measure_stack(material.stack, per_band, bands, resolved);
+    return measurement;
 }
 
 } // namespace reradiant

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "host/measure/surface_model.h"
 #include "host/scene/scene.h"
 
 #include <Eigen/Core>
@@ -20,6 +21,8 @@ struct MeasureRequest {
     bool hemispherical = false; ///< directional-hemispherical; theta_o and phi are not used
     Model model = Model::Auto;
     std::optional<WavelengthGrid> bands; ///< empty: the matrix's own grid
+    long samples = 0;  ///< of the walk: paths for each theta_i, 0: default_walk_samples
+    unsigned seed = 0; ///< of the walk
 };
 
 enum class MeasuredPart { Diffuse, Specular };
@@ -41,16 +44,23 @@ struct Measurement {
     std::vector<std::string> notes; ///< what a reader of the rows must know, a line each
 };
 
-/// Measures a material. Spectra are taken at band centres. Without `bands` the matrix's own grid is
-/// used; without a matrix, 300-780 nm in 10 nm steps when it fluoresces, else 380-780 nm. Input
-/// Error for angles out of range, the model `walk`, and a matrix whose two grids make no common
-/// one.
+/// Measures a material with the model that choose_model picks; a note says why. Spectra are taken
+/// at band centres. Without `bands` the matrix's own grid is used; without a matrix, 300-780 nm in
+/// 10 nm steps when it fluoresces, else 380-780 nm. Input Error for angles out of range and for a
+/// matrix whose two grids make no common one.
 Measurement measure_material(const Material& material, const MeasureRequest& request);
 
 /// The same for a stack over a substrate given by its per-band matrix, (bands, bands), rows =
 /// emission. `request.bands` is not used.
 Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_band,
                           const WavelengthGrid& bands, const MeasureRequest& request);
+
+/// The same over any substrate.
+Measurement measure_substrate(const LayerStack& stack, const MeasuredSubstrate& substrate,
+                              const WavelengthGrid& bands, const MeasureRequest& request);
+
+/// A substrate at the band centres.
+MeasuredSubstrate measured_substrate(const Substrate& substrate, const WavelengthGrid& bands);
 
 /// Writes the CSV of INTERFACE "measure": notes as # lines, then the header and one line a row, 12
 /// significant digits. Atomic.

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "host/layers/stack.h"
+#include "host/layers/adding.h"
+#include "host/layers/walk_elements.h"
 #include "host/spectral/grid.h"
 #include "kernels/portable.h"
 
@@ -12,37 +13,43 @@
 
 namespace reradiant {
 
-/// What a model says about a stack over a substrate, per band: f_diffuse(lo, li) =
-/// way_out(lo) centre(lo, li) way_in(li). All per band, at the band centres. No cosine.
+using MeasuredSubstrate = WalkSubstrate;
+
+/// What a closed model says of a stack over a substrate, at the band centres. No cosine in
+/// directional values. `diffuse` reached the substrate, of whatever type; `specular` never did.
 class SurfaceModel {
 public:
     virtual ~SurfaceModel() = default;
 
-    /// The re-radiation matrix as it acts under the stack: (bands, bands), rows = emission, unit 1.
-    virtual const Eigen::MatrixXd& centre() const = 0;
-    /// Unit 1.
-    virtual double way_in(int band, const kernels::Vec3& wi, const kernels::Vec3& wo) const = 0;
-    /// 1/sr.
-    virtual double way_out(int band, const kernels::Vec3& wi, const kernels::Vec3& wo) const = 0;
-    /// Light that never reached the substrate, without deltas, 1/sr.
+    /// (bands, bands), rows = emission: zero where no light can go from one band to another.
+    virtual const Eigen::MatrixXd& coupling() const = 0;
+    /// Without deltas, per band: (bands, bands), rows = emission, 1/sr.
+    virtual Eigen::MatrixXd diffuse(const kernels::Vec3& wi, const kernels::Vec3& wo) const = 0;
+    /// Without deltas, 1/sr.
     virtual double specular(int band, const kernels::Vec3& wi, const kernels::Vec3& wo) const = 0;
-    /// Weight of the mirror delta, unit 1.
+    /// Weights of the mirror deltas, unit 1: of the stack, and of a smooth conductor under it.
     virtual double specular_delta(int band, double cos_theta) const = 0;
-    /// Hemispherical diffuse reflectances for light from wi: (bands, bands), unit 1.
+    virtual double substrate_delta(int band, double cos_theta) const = 0;
+    /// Directional-hemispherical, deltas included: (bands, bands), rows = emission, unit 1.
     virtual Eigen::MatrixXd hemispherical_diffuse(double cos_theta) const = 0;
     /// Share of the flux that leaves without having reached the substrate, delta included.
     virtual double hemispherical_specular(int band, double cos_theta) const = 0;
+    /// Rough lobes over the half vector in air that cover the peaks of the two parts.
+    virtual std::vector<AddingTransport::Lobe> lobes() const = 0;
+    /// True when `diffuse` is the reflection of a conductor.
+    virtual bool has_conductor() const = 0;
     /// Share of the flux that single scattering loses on the way in.
     virtual double lost(int band, double cos_theta) const = 0;
 };
 
-/// Model B, every interreflection.
+/// Model B, every interreflection. Input Error for a conductor and for stacks that adding refuses.
 std::unique_ptr<SurfaceModel> adding_surface(const LayerStack& stack,
-                                             const Eigen::MatrixXd& per_band,
+                                             const MeasuredSubstrate& substrate,
                                              const WavelengthGrid& bands);
-/// Model A, Weidlich and Wilkie 2007.
+/// Model A, Weidlich and Wilkie 2007, for anything. Hemispherical values are integrated
+/// numerically, to about 1e-5 of the incident light (1e-4 with blinn, whose G has kinks).
 std::unique_ptr<SurfaceModel> weidlich_wilkie_surface(const LayerStack& stack,
-                                                      const Eigen::MatrixXd& per_band,
+                                                      const MeasuredSubstrate& substrate,
                                                       const WavelengthGrid& bands);
 
 } // namespace reradiant

@@ -70,7 +70,8 @@ EnvironmentRecord append_environment_image(const Image& image, double rotation_d
     EnvironmentRecord record{};
     record.width = static_cast<std::uint32_t>(image.width);
     record.height = static_cast<std::uint32_t>(image.height);
-    record.rotation = static_cast<float>(rotation_deg / 360.0);
+    // right-handed about y: from -z towards -x, against the order of the columns
+    record.rotation = static_cast<float>(-rotation_deg / 360.0);
     record.image = here();
     tables.insert(tables.end(), image.rgb.begin(), image.rgb.end());
     record.density = here();

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace reradiant {
@@ -74,6 +73,74 @@ double luminance_variance(const FilmSums& film, std::size_t pixel, double n) {
     const float* y = film.statistics.data() + pixel * film_statistics_per_pixel;
     return variance_of_mean(static_cast<double>(y[0]) - static_cast<double>(y[2]),
                             static_cast<double>(y[1]) - static_cast<double>(y[3]), n);
+}
+
+/// Mean over pixels and bands. Sums by chunk, added in order: the result does not depend on
+/// threads.
+double mean_radiance(const FilmSums& film, const FilmLayout& layout, std::size_t pixels, int bands,
+                     std::uint32_t samples) {
+    std::vector<double> parts(pixels / pixels_at_once + 1, 0.0);
+    for_each_pixel(film, layout, pixels, bands,
+                   [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
+                       const double n = accepted(film, pixel, samples);
+                       for (const double sum : sums.sum)
+                           parts[chunk] += n > 0.0 ? sum / n : 0.0;
+                   });
+    return std::accumulate(parts.begin(), parts.end(), 0.0) / (static_cast<double>(pixels) * bands);
+}
+
+/// d^2 / (value^2 + floor) of one pixel, added over its bands.
+double squared_error(const PixelSums& sums, double n, std::uint32_t samples, double floor) {
+    double total = 0.0;
+    for (std::size_t b = 0; b < sums.sum.size() && n > 0.0; ++b) {
+        const double value = sums.sum[b] / n;
+        // With an odd count the even half has one sample more.
+        const double d = (sums.alternating[b] - (samples % 2 == 1 ? value : 0.0)) / n;
+        if (value * value + floor > 0.0)
+            total += d * d / (value * value + floor);
+    }
+    return total;
+}
+
+/// The errors of pixels that are added in order, and how far neighbours differ.
+struct ErrorSums {
+    double sum = 0.0, squared_differences = 0.0, waiting = 0.0;
+    std::size_t pixels = 0;
+
+    void add(double error) {
+        if (pixels++ % 2 == 1)
+            squared_differences += (error - waiting) * (error - waiting);
+        waiting = error;
+        sum += error;
+    }
+};
+
+/// Pixels are independent but differ in their expected errors, so that the spread over the image
+/// says little about the noise of the mean. Neighbours are alike: half the squared difference of
+/// two is the variance of one, or somewhat more (collapsed strata; Cochran, Sampling Techniques,
+/// 5A.12). The error that the image has and the estimate of it are two such means that hardly
+/// correlate (sum and difference of the halves), hence twice the variance; their ratio is near an
+/// F distribution of equal degrees of freedom, which is symmetric in its logarithm.
+RelmseEstimate estimate_from(const std::vector<ErrorSums>& parts) {
+    constexpr double normal_quantile = 1.959964; // of 97.5 %
+    double sum = 0.0, variance = 0.0;
+    std::size_t pixels = 0, paired = 0;
+    for (const ErrorSums& part : parts) {
+        sum += part.sum;
+        variance += part.squared_differences;
+        pixels += part.pixels;
+        paired += part.pixels / 2 * 2;
+    }
+    RelmseEstimate estimate;
+    estimate.value = sum / static_cast<double>(pixels);
+    if (paired == 0)
+        return estimate;
+    variance *= static_cast<double>(pixels) / static_cast<double>(paired);
+    const double spread =
+        sum > 0.0 ? std::exp(normal_quantile * std::sqrt(2.0 * variance) / sum) : 1.0;
+    estimate.low = estimate.value / spread;
+    estimate.high = estimate.value * spread;
+    return estimate;
 }
 
 } // namespace
@@ -146,36 +213,20 @@ SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int w
     return image;
 }
 
-double estimated_relmse(const FilmSums& film, const FilmLayout& layout, int bands,
-                        std::uint32_t samples) {
+RelmseEstimate estimated_relmse(const FilmSums& film, const FilmLayout& layout, int bands,
+                                std::uint32_t samples) {
     if (samples < 2)
-        return std::numeric_limits<double>::infinity();
+        return {};
     const std::size_t pixels = film.statistics.size() / film_statistics_per_pixel;
-    // Sums by chunk, added in order: the result does not depend on threads.
-    std::vector<double> parts(pixels / pixels_at_once + 1, 0.0);
-    for_each_pixel(film, layout, pixels, bands,
-                   [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
-                       const double n = accepted(film, pixel, samples);
-                       for (const double sum : sums.sum)
-                           parts[chunk] += n > 0.0 ? sum / n : 0.0;
-                   });
-    const double count = static_cast<double>(pixels) * bands;
-    const double mean = std::accumulate(parts.begin(), parts.end(), 0.0) / count;
+    const double mean = mean_radiance(film, layout, pixels, bands, samples);
     const double floor = 0.01 * mean * mean;
-    std::fill(parts.begin(), parts.end(), 0.0);
+    std::vector<ErrorSums> parts(pixels / pixels_at_once + 1);
     for_each_pixel(film, layout, pixels, bands,
                    [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
                        const double n = accepted(film, pixel, samples);
-                       for (std::size_t b = 0; b < sums.sum.size() && n > 0.0; ++b) {
-                           const double value = sums.sum[b] / n;
-                           // With an odd count the even half has one sample more.
-                           const double d =
-                               (sums.alternating[b] - (samples % 2 == 1 ? value : 0.0)) / n;
-                           if (value * value + floor > 0.0)
-                               parts[chunk] += d * d / (value * value + floor);
-                       }
+                       parts[chunk].add(squared_error(sums, n, samples, floor) / bands);
                    });
-    return std::accumulate(parts.begin(), parts.end(), 0.0) / count;
+    return estimate_from(parts);
 }
 
 } // namespace reradiant

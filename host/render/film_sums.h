@@ -4,6 +4,7 @@
 #include "host/render/wavelength_plan.h"
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -39,10 +40,18 @@ struct FilmSums {
 SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int width, int height,
                            const WavelengthGrid& bands, std::uint32_t samples);
 
+/// What a render can say about its own error without a reference.
+struct RelmseEstimate {
+    double value = std::numeric_limits<double>::infinity();
+    /// 95 % interval of the error that this very image has, not of its expectation.
+    double low = 0.0, high = std::numeric_limits<double>::infinity();
+};
+
 /// Estimated relMSE of the mean image against the truth, as `compare` defines it: the mean of
 /// d^2 / (ref^2 + 0.01 mean(ref)^2) with d from the difference of the even and the odd samples'
-/// halves, which has the variance of the mean. Infinite below two samples.
-double estimated_relmse(const FilmSums& film, const FilmLayout& layout, int bands,
-                        std::uint32_t samples);
+/// halves, which has the variance of the mean. Nothing is known below two samples, and no interval
+/// below two pixels.
+RelmseEstimate estimated_relmse(const FilmSums& film, const FilmLayout& layout, int bands,
+                                std::uint32_t samples);
 
 } // namespace reradiant

@@ -156,6 +156,8 @@ double append_light_spectrum(const Scene& scene, const Light& light, const Wavel
     const auto index = static_cast<std::uint32_t>(tables.lights.size());
     if (sky->image >= 0) {
         const Image& image = scene.images[static_cast<std::size_t>(sky->image)];
+        if (!(mean_over_sphere(image) > 0.0))
+            return 0.0; // black: nothing to sample
         const double mean = append_image_spectra(*sky, plan, tables.tables);
         tables.image = append_environment_image(image, sky->rotation_deg, tables.tables);
         tables.image.light = index;

@@ -3,9 +3,12 @@
 #include "host/render/stack_parts.h"
 #include "host/render/substrate_tables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 namespace reradiant {
 
@@ -20,8 +23,10 @@ public:
           optics_(material, model, plan), parts_(stack_parts(material)) {}
 
     void append() {
+        record_.walk = NO_INDEX;
         record_.spectral = optics_.is_spectral() ? 1u : 0u;
         out_.features.spectral_stack |= optics_.is_spectral();
+        note_thick_films();
         append_layers();
         choose_evaluation();
         append_lobes();
@@ -34,6 +39,36 @@ public:
 
 private:
     bool is_model_a() const { return model_ == Model::WeidlichWilkie; }
+
+    /// A cubic between 65 nodes over the cosine's square root follows three fringes to 1 %.
+    void note_thick_films() {
+        constexpr double shortest_nm = 400.0, most_fringes = 3.0;
+        for (const StackPart& part : parts_) {
+            const std::optional<ThinFilm>& film = film_of(part);
+            if (!film)
+                continue;
+            const double above = material_at(material_, shortest_nm).ior_below(part.slabs_above());
+            const double inside = film->ior(shortest_nm);
+            const double grazing = std::sqrt(std::max(inside * inside - above * above, 0.0));
+            if (2.0 * film->thickness_nm * (inside - grazing) / shortest_nm > most_fringes)
+                out_.notes.push_back(
+                    fmt::format("material '{}': fringes of its film of {} nm are finer than the "
+                                "tables of angles; measure resolves them",
+                                material_.name, film->thickness_nm));
+        }
+    }
+
+    const std::optional<ThinFilm>& film_of(const StackPart& part) const {
+        switch (part.kind) {
+        case StackPart::Kind::Interface:
+            return material_.stack.layers[part.layer].film;
+        case StackPart::Kind::Flakes:
+            return material_.stack.layers[part.layer].flakes->reflector.film;
+        case StackPart::Kind::Conductor:
+            break;
+        }
+        return material_.substrate.conductor.film;
+    }
 
     void append_layers() {
         record_.first_layer = static_cast<std::uint32_t>(out_.layers.size());
@@ -95,7 +130,7 @@ private:
     /// Fresnel's bare dielectric is the only reflectance that kernels know by themselves.
     bool is_tabulated(const StackPart& part) const {
         return part.kind != StackPart::Kind::Interface ||
-               material_.stack.layers[part.layer].film.has_value();
+               (film_of(part) && film_of(part)->thickness_nm > 0.0);
     }
 
     void append_reflectance(std::size_t p) {

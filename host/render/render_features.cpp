@@ -13,6 +13,9 @@ struct FeatureBit {
     const char* why_off;
 };
 
+/// Deeper lobes of kernels that are specialised for nothing: more than most scenes have.
+constexpr int generic_lobes = 4;
+
 constexpr FeatureBit feature_bits[] = {
     {"fluorescence", "FEATURE_FLUORESCENCE", &RenderFeatures::fluorescence,
      "no substrate re-radiates"},
@@ -21,15 +24,15 @@ constexpr FeatureBit feature_bits[] = {
     {"spectral_stack", "FEATURE_SPECTRAL_STACK", &RenderFeatures::spectral_stack,
      "no layer absorbs or disperses"},
     {"dispersion", "FEATURE_DISPERSION", &RenderFeatures::dispersion,
-     "no rough top interface has an IOR that depends on wavelength"},
-    {"smooth", "FEATURE_SMOOTH", &RenderFeatures::smooth, "no interface is smooth"},
-    {"rough", "FEATURE_ROUGH", &RenderFeatures::rough, "no top interface is rough"},
+     "no rough interface that kernels evaluate has an IOR that depends on wavelength"},
+    {"smooth", "FEATURE_SMOOTH", &RenderFeatures::smooth, "nothing smooth reflects"},
+    {"rough", "FEATURE_ROUGH", &RenderFeatures::rough, "no top interface or bare metal is rough"},
     {"deeper_lobes", "FEATURE_DEEPER_LOBES", &RenderFeatures::deeper_lobes,
-     "no stack has a second interface that makes a rough lobe"},
+     "nothing under a top interface makes a lobe of its own"},
     {"weidlich_wilkie", "FEATURE_WEIDLICH_WILKIE", &RenderFeatures::weidlich_wilkie,
-     "no rough stack uses the model weidlich-wilkie"},
+     "no stack with lobes uses the model weidlich-wilkie"},
     {"tabulated_reflectance", "FEATURE_TABULATED_REFLECTANCE",
-     &RenderFeatures::tabulated_reflectance, "no rough conductor, flakes or film"},
+     &RenderFeatures::tabulated_reflectance, "no rough metal, flakes or film"},
     {"scattering_slabs", "FEATURE_SCATTERING_SLABS", &RenderFeatures::scattering_slabs,
      "no slab scatters"},
     {"oren_nayar", "FEATURE_OREN_NAYAR", &RenderFeatures::oren_nayar, "no substrate is Oren-Nayar"},
@@ -57,7 +60,7 @@ RenderFeatures RenderFeatures::all() {
     RenderFeatures features;
     for (const FeatureBit& bit : feature_bits)
         features.*bit.value = true;
-    features.lobes = 1;
+    features.lobes = generic_lobes;
     return features;
 }
 
@@ -68,6 +71,7 @@ KernelDefines RenderFeatures::defines() const {
     defines.emplace_back("CHUNKS", chunks);
     defines.emplace_back("FILM_CHUNKS", film_chunks);
     defines.emplace_back("LOBES", lobes);
+    defines.emplace_back("WALK_LAYERS", walk_layers);
     return defines;
 }
 

@@ -2,9 +2,13 @@
 
 #include "host/error.h"
 #include "host/geometry/geometry.h"
+#include "host/render/checkpoint.h"
 #include "host/render/film_sums.h"
+#include "host/render/render_identity.h"
 #include "host/render/scene_tables.h"
+#include "host/render/stack_optics.h"
 #include "host/render/wavefront.h"
+#include "host/scene/model_choice.h"
 
 #include <fmt/format.h>
 
@@ -18,11 +22,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Samples of one pass at most: between passes the film is read and the stop rules are checked.
-constexpr std::uint32_t most_samples_in_pass = 64;
+/// Samples of a pass: between passes the film is read and the stop rules are checked.
+constexpr std::uint32_t samples_in_pass = 64;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double seconds_of(const std::function<void()>& work) {
+    const Clock::time_point start = Clock::now();
+    work();
+    return seconds_since(start);
 }
 
 std::uint64_t machine_memory_bytes() {
@@ -51,15 +61,39 @@ SceneTables prepare_tables(const Scene& scene, const WavelengthPlan& plan,
     return tables;
 }
 
-/// Doubling passes: the first ones show and estimate early, later ones cost little to stop.
-std::uint32_t next_pass(std::uint32_t done, const RenderOptions& options) {
-    const std::uint32_t size = std::clamp<std::uint32_t>(done, 1, most_samples_in_pass);
+/// Doubling passes: the first ones show and estimate early, later ones cost little to stop, and
+/// take a sixteenth of what is done, so that their number stays small. None is longer than the time
+/// between two checkpoints.
+std::uint32_t next_pass(const RenderProgress& state, const RenderOptions& options) {
+    const std::uint32_t done = state.samples;
+    std::uint32_t size = std::max(std::clamp<std::uint32_t>(done, 1, samples_in_pass), done / 16);
+    const double affordable = done * options.checkpoint_seconds / std::max(state.seconds, 1e-9);
+    if (!options.checkpoint.empty() && done > 0 && affordable < size)
+        size = std::max(1u, static_cast<std::uint32_t>(affordable));
     return std::min(size, options.samples - done);
 }
 
 bool must_stop(const RenderProgress& state, const RenderOptions& options) {
     return state.samples >= options.samples || state.seconds >= options.time_seconds ||
            state.relmse <= options.relmse;
+}
+
+void estimate_error(RenderProgress& state, const FilmSums& film, const FilmLayout& layout,
+                    const WavelengthPlan& plan) {
+    const RelmseEstimate estimate = estimated_relmse(film, layout, plan.film.count, state.samples);
+    state.relmse = estimate.value;
+    state.relmse_low = estimate.low;
+    state.relmse_high = estimate.high;
+}
+
+SpectralImage resolved(const Wavefront& wavefront, const FilmLayout& layout, const Scene& scene,
+                       const WavelengthPlan& plan, const RenderProgress& state) {
+    SpectralImage image;
+    wavefront.with_film([&](const FilmSums& film) {
+        image = resolve_film(film, layout, scene.film.width, scene.film.height, plan.film,
+                             state.samples);
+    });
+    return image;
 }
 
 void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables& tables) {
@@ -71,8 +105,8 @@ void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables
     result.trace_seconds = statistics.intersect_seconds + statistics.occlude_seconds;
     result.shade_seconds = statistics.generate_seconds + statistics.shade_seconds +
                            statistics.gather_seconds + statistics.film_seconds;
-    result.paths = statistics.paths;
-    result.rays = statistics.rays;
+    result.paths += statistics.paths; // on top of a resumed render's
+    result.rays += statistics.rays;
     result.build_seconds = result.build.seconds;
     result.device_bytes = wavefront.device_bytes();
     result.table_bytes = tables.tables.size() * sizeof(float);
@@ -82,6 +116,80 @@ void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables
                            result.plan.left_out.end());
     result.notes = tables.notes;
 }
+
+std::uint64_t most_deeper_lobes(const Scene& scene, Model model) {
+    int most = 0;
+    for (const Material& material : scene.materials)
+        most = std::max(most, deeper_lobe_count(
+                                  material, choose_model(material, model, ModelUse::Render).model));
+    return static_cast<std::uint64_t>(most);
+}
+
+/// Whether images colour lights or reflectances, so that vertices keep colours.
+bool has_colours(const Scene& scene) {
+    const auto is_image = [](const Light& light) {
+        const auto* sky = std::get_if<EnvironmentLight>(&light);
+        return sky != nullptr && sky->image >= 0;
+    };
+    return std::any_of(scene.lights.begin(), scene.lights.end(), is_image) ||
+           std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [](const Material& m) { return m.substrate.reflectance_image >= 0; });
+}
+
+/// The checkpoint file of one render.
+class Checkpoints {
+public:
+    Checkpoints(const Scene& scene, const Device& device, const RenderOptions& options)
+        : options_(options) {
+        if (!options.checkpoint.empty())
+            head_.identity = render_identity(scene, device, options);
+    }
+
+    /// The state to go on from: that of the checkpoint where there is one and it is asked for.
+    RenderProgress resume(Wavefront& wavefront, RenderResult& result) const {
+        std::error_code ignored;
+        if (options_.checkpoint.empty() || !options_.resume ||
+            !std::filesystem::exists(options_.checkpoint, ignored))
+            return {};
+        const RenderCheckpoint kept =
+            read_checkpoint(options_.checkpoint, head_.identity, wavefront.film_float_count());
+        wavefront.restore_film({kept.sums, kept.statistics});
+        result.passes = kept.passes;
+        result.paths = kept.paths;
+        result.rays = kept.rays;
+        result.resumed_samples = kept.passes.back().samples;
+        return kept.passes.back();
+    }
+
+    /// Writes one when it is time, and for an interrupted render. Keeps the share of time that goes
+    /// into writing below a tenth.
+    void after_pass(const Wavefront& wavefront, const RenderResult& result) {
+        if (options_.checkpoint.empty() ||
+            (!result.interrupted && seconds_since(written_) < std::max(options_.checkpoint_seconds,
+                                                                       10.0 * write_seconds_)))
+            return;
+        const Clock::time_point start = Clock::now();
+        head_.passes = result.passes;
+        head_.paths = result.paths + wavefront.statistics().paths;
+        head_.rays = result.rays + wavefront.statistics().rays;
+        wavefront.with_film(
+            [&](const FilmSums& film) { write_checkpoint(options_.checkpoint, head_, film); });
+        written_ = Clock::now();
+        write_seconds_ = seconds_since(start);
+    }
+
+    void remove() const {
+        std::error_code ignored;
+        if (!options_.checkpoint.empty())
+            std::filesystem::remove(options_.checkpoint, ignored);
+    }
+
+private:
+    const RenderOptions& options_;
+    RenderCheckpoint head_;
+    Clock::time_point written_ = Clock::now();
+    double write_seconds_ = 0.0;
+};
 
 } // namespace
 
@@ -94,15 +202,19 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
     const std::uint64_t film = pixels * (rows * lanes + film_statistics_per_pixel) * 4;
     const std::uint64_t image = pixels * (static_cast<std::uint64_t>(plan.film.count) + 5) * 4;
     const std::uint64_t depth = static_cast<std::uint64_t>(scene.integrator.max_depth) + 1;
+    const std::uint64_t vertex = sizeof(VertexRecord) + sizeof(RayRecord) +
+                                 2 * sizeof(float) * most_deeper_lobes(scene, options.model) +
+                                 (has_colours(scene) ? VERTEX_COLOURS * sizeof(float) : 0);
     const std::uint64_t paths =
-        options.batch_paths * (depth * (sizeof(VertexRecord) + sizeof(RayRecord)) + lanes * 4 +
-                               sizeof(RayRecord) + sizeof(HitRecord) + sizeof(PathState));
+        options.batch_paths *
+        (depth * vertex + lanes * 4 + sizeof(RayRecord) + sizeof(HitRecord) + sizeof(PathState));
     // The film is mapped where it is; the image is held once more while it is written.
     return film + 2 * image + paths;
 }
 
 RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
-                    const std::function<bool(const RenderProgress&)>& progress) {
+                    const std::function<bool(const RenderProgress&)>& progress,
+                    const RenderObserver& observe) {
     const Clock::time_point start = Clock::now();
     RenderResult result;
     result.plan =
@@ -119,28 +231,36 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
 
     const FilmLayout layout =
         film_layout(result.plan, tables.features.band_variance, tables.features.scatter);
+    Checkpoints checkpoints(scene, device, options);
+    RenderProgress state = checkpoints.resume(wavefront, result);
+    const double seconds_before = state.seconds;
+    double observing_seconds = 0.0;
     const Clock::time_point rendering = Clock::now();
-    RenderProgress state;
     while (!must_stop(state, options)) {
-        const std::uint32_t samples = next_pass(state.samples, options);
+        const std::uint32_t samples = next_pass(state, options);
         wavefront.render_pass(options.first_sample + state.samples, samples);
         state.samples += samples;
-        state.seconds = seconds_since(rendering);
-        wavefront.with_film([&](const FilmSums& film) {
-            state.relmse = estimated_relmse(film, layout, result.plan.film.count, state.samples);
-        });
+        state.seconds = seconds_before + seconds_since(rendering) - observing_seconds;
+        wavefront.with_film(
+            [&](const FilmSums& film) { estimate_error(state, film, layout, result.plan); });
         result.passes.push_back(state);
-        if (progress && !progress(state))
+        if (observe)
+            observing_seconds += seconds_of([&] {
+                observe(state,
+                        [&] { return resolved(wavefront, layout, scene, result.plan, state); });
+            });
+        result.interrupted = progress && !progress(state);
+        checkpoints.after_pass(wavefront, result);
+        if (result.interrupted)
             break;
     }
-    wavefront.with_film([&](const FilmSums& film) {
-        result.image = resolve_film(film, layout, scene.film.width, scene.film.height,
-                                    result.plan.film, state.samples);
-        result.non_finite = film.refused();
-    });
+    result.image = resolved(wavefront, layout, scene, result.plan, state);
+    wavefront.with_film([&](const FilmSums& film) { result.non_finite = film.refused(); });
     result.samples = state.samples;
     result.relmse = state.relmse;
     collect(result, wavefront, tables);
+    if (!result.interrupted)
+        checkpoints.remove();
     result.total_seconds = seconds_since(start);
     return result;
 }

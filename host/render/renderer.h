@@ -7,6 +7,7 @@
 #include "host/scene/scene.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <map>
@@ -30,14 +31,23 @@ struct RenderOptions {
     bool all_features = false;
     std::size_t batch_paths = 1u << 15;
     std::uint64_t memory_limit_bytes = 0; ///< 0: 80 % of the machine's memory
+    std::filesystem::path checkpoint;     ///< empty: none is written or read
+    double checkpoint_seconds = 60.0;     ///< at most so long between two of them
+    bool resume = false;                  ///< go on from `checkpoint` where it exists
 };
 
 /// The state of a render after one pass.
 struct RenderProgress {
     std::uint32_t samples = 0;
     double seconds = 0.0; ///< since rendering began, set-up not counted
-    double relmse = std::numeric_limits<double>::infinity();
+    double relmse = std::numeric_limits<double>::infinity(); ///< estimated
+    /// 95 % interval of the error that the image has (host/render/film_sums.h)
+    double relmse_low = 0.0, relmse_high = std::numeric_limits<double>::infinity();
 };
+
+/// Sees what a render has after a pass. `image` resolves the mean so far, during the call alone.
+using RenderObserver =
+    std::function<void(const RenderProgress& state, const std::function<SpectralImage()>& image)>;
 
 struct RenderResult {
     SpectralImage image;
@@ -48,6 +58,8 @@ struct RenderResult {
     std::map<std::string, double> stage_seconds;
     double total_seconds = 0.0;
     std::uint32_t samples = 0;
+    std::uint32_t resumed_samples = 0; ///< of them, taken from a checkpoint
+    bool interrupted = false;          ///< `progress` said stop; a checkpoint holds what was done
     std::uint64_t paths = 0, rays = 0, non_finite = 0;
     double relmse = std::numeric_limits<double>::infinity();
     BuildStatistics build;
@@ -58,9 +70,13 @@ struct RenderResult {
 };
 
 /// Renders a scene. `progress` is called after every pass; returning false stops the render, and
-/// the result holds what was done. Input Error when the predicted memory exceeds the limit.
+/// the result holds what was done. `observe` is called before it; the time that it takes is left out
+/// of RenderProgress::seconds. Input Error when the predicted memory exceeds the limit, or when the
+/// checkpoint to resume is damaged or of another scene, build, device or setting. The checkpoint is
+/// removed when the render has ended by itself.
 RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
-                    const std::function<bool(const RenderProgress&)>& progress = {});
+                    const std::function<bool(const RenderProgress&)>& progress = {},
+                    const RenderObserver& observe = {});
 
 /// Bytes that rendering will take for film, paths and result (before anything is allocated).
 std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& plan,

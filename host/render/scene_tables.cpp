@@ -1,22 +1,31 @@
 #include "host/render/scene_tables.h"
 
-#include "host/error.h"
 #include "host/render/stack_optics.h"
+#include "host/render/walk_tables.h"
+#include "host/scene/model_choice.h"
 #include "kernels/features.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace reradiant {
 
 namespace {
 
-/// The model that renders a material: `auto` takes adding, which is exact for diffuse substrates.
-Model chosen_model(const Material& material, Model requested) {
-    const Model model = requested == Model::Auto ? material.model : requested;
-    if (model == Model::Walk)
-        throw_input_error({}, "the model 'walk' is not part of this version's renderer",
-                          "use adding or weidlich-wilkie");
-    return model == Model::Auto ? Model::Adding : model;
+std::string model_note(const Material& material, const ModelChoice& choice) {
+    const std::string note =
+        fmt::format("material '{}': model {}", material.name, model_name(choice.model));
+    return choice.reason.empty() ? note : note + ", " + choice.reason;
+}
+
+/// Variants of a textured material say the same: once is enough.
+void drop_repeats(std::vector<std::string>& notes) {
+    std::vector<std::string> once;
+    for (std::string& note : notes)
+        if (std::find(once.begin(), once.end(), note) == once.end())
+            once.push_back(std::move(note));
+    notes = std::move(once);
 }
 
 } // namespace
@@ -26,19 +35,27 @@ SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, M
     SceneTables tables;
     if (keep_all)
         tables.features = RenderFeatures::all();
-    for (const Material& material : scene.materials)
-        tables.features.lobes = std::max(
-            tables.features.lobes, deeper_lobe_count(material, chosen_model(material, model)));
+    std::vector<Model> models;
+    for (const Material& material : scene.materials) {
+        const ModelChoice choice = choose_model(material, model, ModelUse::Render);
+        models.push_back(choice.model);
+        tables.notes.push_back(model_note(material, choice));
+        if (choice.model != Model::Walk)
+            tables.features.lobes =
+                std::max(tables.features.lobes, deeper_lobe_count(material, choice.model));
+    }
     tables.features.chunks = plan.padded_lanes() / WIDTH;
     tables.features.film_chunks = tables.features.chunks;
     tables.camera = camera_record(scene.camera, scene.film);
     tables.features.lens |= scene.camera.lens_radius > 0.0;
-    for (const Material& material : scene.materials) {
-        const Model chosen = chosen_model(material, model);
-        tables.notes.push_back(
-            fmt::format("material '{}': model {}", material.name, model_name(chosen)));
-        append_material(material, chosen, plan, tables.features.lobes, tables);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        if (models[i] == Model::Walk)
+            append_walk_material(material, plan, scene.file.string(), tables);
+        else
+            append_material(material, models[i], plan, tables.features.lobes, tables);
     }
+    drop_repeats(tables.notes);
     append_surfaces(scene, tables);
     append_lights(scene, plan, tables);
     return tables;

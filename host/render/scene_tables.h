@@ -19,6 +19,7 @@ struct SceneTables {
     std::vector<SurfaceRecord> surfaces;
     std::vector<TextureRecord> textures;
     std::vector<LightRecord> lights;
+    std::vector<WalkPartRecord> walk_parts; ///< of materials that are walked through
     std::vector<float> tables;
     std::uint32_t sampled_lights = 0; ///< lights that light sampling can choose, first in `lights`
     std::uint32_t environment = NO_INDEX; ///< light that holds the constant environments' spectrum

@@ -1,5 +1,6 @@
 #include "host/render/wavefront.h"
 
+#include "host/error.h"
 #include "kernels/features.h"
 
 #include <algorithm>
@@ -13,6 +14,9 @@ namespace {
 /// (CASES 37: PoCL lays out a whole group's private memory on one stack).
 constexpr std::size_t scalar_group = 32;
 constexpr std::size_t vector_group = 8;
+
+/// Chunks of events that walks have at first; a batch that needs more gets more.
+constexpr std::size_t chunks_a_path = 4;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -47,6 +51,7 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         surfaces_ = {device, std::span(scene.surfaces)};
         textures_ = {device, std::span(scene.textures)};
         lights_ = {device, std::span(scene.lights)};
+        walk_parts_ = {device, std::span(scene.walk_parts)};
         tables_ = {device, std::span(scene.tables)};
         const std::size_t slots = static_cast<std::size_t>(capacity_) * rounds_;
         rays_ = {device, capacity_};
@@ -58,6 +63,10 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         shadow_rays_ = {device, sampling ? slots : 0};
         const bool colours = scene.features.environment_image || scene.features.reflectance_image;
         colours_ = {device, colours ? slots * VERTEX_COLOURS : 0};
+        const bool walks = scene.features.walk;
+        walk_chunks_ = {device, walks ? chunks_a_path * static_cast<std::size_t>(capacity_) : 0};
+        walk_chunks_used_ = {device, std::size_t{walks}};
+        walk_vertices_ = {device, walks ? slots : 0};
         lobe_weights_ = {device, slots * 2u * static_cast<std::size_t>(scene.features.lobes)};
         radiance_ = {device,
                      static_cast<std::size_t>(capacity_) * static_cast<std::size_t>(lanes_)};
@@ -99,14 +108,39 @@ void Wavefront::render_pass(std::uint32_t first_sample, std::uint32_t samples) {
 }
 
 void Wavefront::trace_batch(const Batch& batch) {
+    do
+        trace_paths(batch);
+    while (!walks_fit());
+    gather(batch);
+    add_to_film(batch);
+    statistics_.paths += batch.paths();
+}
+
+void Wavefront::trace_paths(const Batch& batch) {
     generate(batch);
+    if (scene_.features.walk)
+        walk_chunks_used_.fill_zero();
     for (std::uint32_t depth = 0; depth < rounds_ && intersect(batch, depth); ++depth) {
         shade(batch, depth);
         occlude(batch, depth);
     }
-    gather(batch);
-    add_to_film(batch);
-    statistics_.paths += batch.paths();
+}
+
+/// Whether the walks of a batch found room for their events. If not there is room afterwards: they
+/// are the same when the batch is traced again.
+bool Wavefront::walks_fit() {
+    if (!scene_.features.walk)
+        return true;
+    std::size_t used = 0;
+    {
+        const auto counter = walk_chunks_used_.map(CL_MAP_READ, 0, 1);
+        used = counter.span().front();
+    }
+    if (used <= walk_chunks_.size())
+        return true;
+    walk_chunks_ = {}; // never two of them
+    walk_chunks_ = {device_, used + used / 4};
+    return false;
 }
 
 void Wavefront::generate(const Batch& batch) {
@@ -134,7 +168,9 @@ void Wavefront::shade(const Batch& batch, std::uint32_t depth) {
     shade_.bind(rays_.buffer(), hits_.buffer(), paths_.buffer(), vertices_.buffer(),
                 shadow_rays_.buffer(), lobe_weights_.buffer(), colours_.buffer(),
                 materials_.buffer(), layers_.buffer(), lobes_.buffer(), surfaces_.buffer(),
-                textures_.buffer(), lights_.buffer(), tables_.buffer(), scene_.image, batch.paths(),
+                textures_.buffer(), lights_.buffer(), tables_.buffer(), walk_parts_.buffer(),
+                walk_chunks_.buffer(), walk_chunks_used_.buffer(), walk_vertices_.buffer(),
+                scene_.image, static_cast<std::uint32_t>(walk_chunks_.size()), batch.paths(),
                 capacity_, depth, settings_.max_depth, settings_.min_depth, scene_.sampled_lights,
                 scene_.environment, settings_.seed);
     shade_.launch(device_, batch.paths());
@@ -158,8 +194,9 @@ void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
 void Wavefront::gather(const Batch& batch) {
     gather_.bind(radiance_.buffer(), paths_.buffer(), vertices_.buffer(), shadow_rays_.buffer(),
                  lobe_weights_.buffer(), colours_.buffer(), materials_.buffer(), layers_.buffer(),
-                 lobes_.buffer(), lights_.buffer(), tables_.buffer(), scene_.image.light,
-                 batch.paths(), capacity_, static_cast<std::uint32_t>(phases_));
+                 lobes_.buffer(), lights_.buffer(), tables_.buffer(), walk_parts_.buffer(),
+                 walk_chunks_.buffer(), walk_vertices_.buffer(), scene_.image.light, batch.paths(),
+                 capacity_, static_cast<std::uint32_t>(phases_));
     gather_.launch(device_, batch.paths());
     wait_for_kernels(statistics_.gather_seconds);
 }
@@ -186,11 +223,23 @@ void Wavefront::with_film(const std::function<void(const FilmSums&)>& use) const
     });
 }
 
+void Wavefront::restore_film(const FilmSums& film) const {
+    if (film.sums.size() != film_sums_.size() || film.statistics.size() != film_statistics_.size())
+        throw_runtime_error("the film that is restored has another size");
+    opencl_checked("restoring the film", [&] {
+        const auto sums = film_sums_.map(CL_MAP_WRITE, 0, film_sums_.size());
+        const auto statistics = film_statistics_.map(CL_MAP_WRITE, 0, film_statistics_.size());
+        std::copy(film.sums.begin(), film.sums.end(), sums.span().begin());
+        std::copy(film.statistics.begin(), film.statistics.end(), statistics.span().begin());
+    });
+}
+
 std::size_t Wavefront::device_bytes() const {
     return materials_.bytes() + layers_.bytes() + lobes_.bytes() + surfaces_.bytes() +
-           textures_.bytes() + colours_.bytes() + lights_.bytes() + tables_.bytes() +
-           rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() + paths_.bytes() +
-           vertices_.bytes() + lobe_weights_.bytes() + radiance_.bytes() + film_sums_.bytes() +
+           walk_parts_.bytes() + walk_chunks_.bytes() + walk_vertices_.bytes() + textures_.bytes() +
+           colours_.bytes() + lights_.bytes() + tables_.bytes() + rays_.bytes() +
+           shadow_rays_.bytes() + hits_.bytes() + paths_.bytes() + vertices_.bytes() +
+           lobe_weights_.bytes() + radiance_.bytes() + film_sums_.bytes() +
            film_statistics_.bytes() + film_bands_.bytes() + film_weights_.bytes() +
            y_weights_.bytes();
 }

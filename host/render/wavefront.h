@@ -41,6 +41,10 @@ public:
 
     /// Calls `use` with the film's sums as they are on the device, mapped for the call.
     void with_film(const std::function<void(const FilmSums&)>& use) const;
+    /// Replaces the film's sums by those of an earlier render; their sizes must be the film's.
+    void restore_film(const FilmSums& film) const;
+    /// Numbers that the film's sums and statistics hold together.
+    std::size_t film_float_count() const { return film_sums_.size() + film_statistics_.size(); }
     const WavefrontStatistics& statistics() const { return statistics_; }
     std::size_t device_bytes() const;
 
@@ -52,6 +56,8 @@ private:
 
     void build_kernels(BuildStatistics& build);
     void trace_batch(const Batch& batch);
+    void trace_paths(const Batch& batch);
+    bool walks_fit();
     void generate(const Batch& batch);
     bool intersect(const Batch& batch, std::uint32_t depth);
     void shade(const Batch& batch, std::uint32_t depth);
@@ -77,6 +83,10 @@ private:
     DeviceArray<SurfaceRecord> surfaces_;
     DeviceArray<TextureRecord> textures_;
     DeviceArray<LightRecord> lights_;
+    DeviceArray<WalkPartRecord> walk_parts_;
+    DeviceArray<WalkChunk> walk_chunks_;
+    DeviceArray<std::uint32_t> walk_chunks_used_;
+    DeviceArray<WalkVertexRecord> walk_vertices_;
     DeviceArray<float> tables_, colours_;
     DeviceArray<RayRecord> rays_, shadow_rays_;
     DeviceArray<HitRecord> hits_;

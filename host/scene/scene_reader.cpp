@@ -1,11 +1,13 @@
 #include "host/scene/material_reader.h"
 #include "host/scene/scene_parts.h"
+#include "host/scene/scene_table.h"
 #include "host/scene/surface_builder.h"
 #include "host/scene/textured_value.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -98,13 +100,24 @@ void warn_outside_bands(const Scene& scene, const LoadState& state) {
     state.warn_outside(range[0], range[1]);
 }
 
-} // namespace
+/// Constant environments add up to one; an image is looked up alone.
+void read_lights(const TableReader& root, Scene& scene, LoadState& state) {
+    const auto lights = root.tables("light");
+    int skies = 0, images = 0;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        scene.lights.push_back(read_light(*lights[i], root.file(), i, state));
+        if (const auto* sky = std::get_if<EnvironmentLight>(&scene.lights.back())) {
+            ++skies;
+            images += sky->image >= 0 ? 1 : 0;
+        }
+        if (images > 0 && skies > 1)
+            throw_input_error(position_of(root.file(), lights[i]->source()),
+                              "an environment image stands beside another environment",
+                              "put both into one image");
+    }
+}
 
-Scene load_scene(const std::filesystem::path& file) {
-    LoadState state;
-    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
-    state.add_to_digest(text);
-    const toml::table table = parse_toml(file.string(), text);
+Scene read_scene(const toml::table& table, const std::filesystem::path& file, LoadState& state) {
     const TableReader root(
         table, file.string(), "a scene",
         {"film", "camera", "integrator", "light", "shape", "material", "texture"});
@@ -115,9 +128,7 @@ Scene load_scene(const std::filesystem::path& file) {
         "camera", {"origin", "target", "up", "fov_deg", "lens_radius", "focus_distance"}));
     if (root.has("integrator"))
         scene.integrator = read_integrator(root.table("integrator", {"max_depth", "min_depth"}));
-    const auto lights = root.tables("light");
-    for (std::size_t i = 0; i < lights.size(); ++i)
-        scene.lights.push_back(read_light(*lights[i], root.file(), i, state));
+    read_lights(root, scene, state);
     const auto materials = read_materials(root, scene, state);
     const auto shapes = root.tables("shape");
     for (std::size_t i = 0; i < shapes.size(); ++i)
@@ -126,6 +137,27 @@ Scene load_scene(const std::filesystem::path& file) {
     warn_outside_bands(scene, state);
     scene.hash = state.digest();
     return scene;
+}
+
+} // namespace
+
+Scene load_scene(const std::filesystem::path& file) {
+    LoadState state;
+    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
+    state.add_to_digest(text);
+    return read_scene(parse_toml(file.string(), text), file, state);
+}
+
+Scene scene_from_table(const toml::table& table, const std::filesystem::path& file) {
+    LoadState state;
+    std::ostringstream text;
+    text << toml::toml_formatter(table);
+    state.add_to_digest(text.str());
+    return read_scene(table, file, state);
+}
+
+toml::table read_scene_table(const std::filesystem::path& file) {
+    return parse_toml(file.string(), read_file(file, {file.string()}, MAX_TOML_BYTES));
 }
 
 Material load_material(const std::filesystem::path& file) {

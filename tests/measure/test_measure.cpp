@@ -220,7 +220,6 @@ TEST(Measure, WrongRequestsAreRefused) {
     refused([](MeasureRequest& r) { r.theta_o_deg = {std::nan("")}; });
     refused([](MeasureRequest& r) { r.phi_deg = {400}; });
     refused([](MeasureRequest& r) { r.theta_i_deg.clear(); });
-    refused([](MeasureRequest& r) { r.model = Model::Walk; });
 }
 
 TEST(Measure, CsvHasTheDocumentedColumnsAndEmptyAnglesForHemispheres) {

@@ -1,8 +1,9 @@
-#include "host/spectral/colour.h"
+#include "host/spectral/colour_of_matrix.h"
 #include "host/spectral/matrix_io.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 using namespace reradiant;
@@ -25,37 +26,11 @@ protected:
         std::filesystem::path(RERADIANT_SOURCE_DIR) / ".." / "shared" / "data" / "bfc";
 };
 
-struct Seen {
-    Xyz xyz{};
-    double largest_beta = 0.0, largest_at_nm = 0.0;
-};
-
-/// Sums at the band centres, perfect diffuser Y = 100.
-Seen under(const ReradiationMatrix& matrix, const char* name) {
-    const ColourMatching& eye = cie_1931_2_degree();
-    const Spectrum light = illuminant(name);
-    Eigen::VectorXd irradiance(matrix.excitation.count);
-    for (int i = 0; i < matrix.excitation.count; ++i)
-        irradiance[i] = light(matrix.excitation.centre_nm(i));
-    const Eigen::VectorXd exitance = matrix.values * irradiance;
-    Seen seen;
-    double white = 0.0;
-    for (int o = 0; o < matrix.emission.count; ++o) {
-        const double l = matrix.emission.centre_nm(o);
-        const auto node = static_cast<std::size_t>(l - 360.0);
-        seen.xyz[0] += exitance[o] * eye.x[node];
-        seen.xyz[1] += exitance[o] * eye.y[node];
-        seen.xyz[2] += exitance[o] * eye.z[node];
-        white += light(l) * eye.y[node];
-        if (exitance[o] / light(l) > seen.largest_beta)
-            seen = {seen.xyz, exitance[o] / light(l), l};
-    }
-    for (double& component : seen.xyz)
-        component *= 100.0 / white;
-    return seen;
+MatrixColour under(const ReradiationMatrix& matrix, const char* name) {
+    return colour_of_matrix(matrix, illuminant(name), ColourSum::Bands);
 }
 
-void expect_xyz(const Seen& seen, const Xyz& expected) {
+void expect_xyz(const MatrixColour& seen, const Xyz& expected) {
     for (std::size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(seen.xyz[c], expected[c], 5.1e-5); // four decimals
 }
@@ -81,8 +56,10 @@ TEST_F(MeasuredData, ColoursAgreeWithAnIndependentCalculation) {
     EXPECT_EQ(orange.excitation, (WavelengthGrid{300, 10, 49}));
     expect_xyz(under(orange, "D65"), {108.0884, 65.5309, 4.3483});
     expect_xyz(under(orange, "A"), {103.8392, 58.7052, 1.5275});
-    EXPECT_NEAR(under(orange, "D65").largest_beta, 2.394, 5e-4);
-    EXPECT_EQ(under(orange, "D65").largest_at_nm, 600.0);
+    const MatrixColour seen = under(orange, "D65");
+    const auto largest = std::max_element(seen.total.begin(), seen.total.end());
+    EXPECT_NEAR(*largest, 2.394, 5e-4);
+    EXPECT_EQ(seen.nm[static_cast<std::size_t>(largest - seen.total.begin())], 600.0);
     expect_xyz(under(read("POLGREE"), "D65"), {15.2793, 34.4063, 10.1252});
     expect_xyz(under(read("CIBA12"), "D65"), {85.9624, 88.1373, 115.2975});
 }

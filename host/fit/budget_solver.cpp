@@ -1,0 +1,51 @@
+#include "host/fit/budget_solver.h"
+
+#include <fmt/format.h>
+
+namespace reradiant {
+
+namespace {
+
+constexpr double tolerance = 1e-7;
+constexpr int most_rounds = 40;
+
+void append(SolveTrace& trace, const SolveTrace& more) {
+    trace.cost.insert(trace.cost.end(), more.cost.begin(), more.cost.end());
+    trace.seconds.insert(trace.seconds.end(), more.seconds.begin(), more.seconds.end());
+    trace.iterations += more.iterations;
+    trace.kkt = more.kkt;
+    trace.converged = more.converged;
+    trace.stop_reason = more.stop_reason;
+}
+
+} // namespace
+
+ModelFit minimise_within_budget(const FittedModel& model, const FitTarget& target,
+                                PhotonPenalty& penalty, const Eigen::VectorXd& start,
+                                const SolverSettings& settings,
+                                std::chrono::steady_clock::time_point begin) {
+    ModelFit fit;
+    fit.parameters = start;
+    // As stiff as the data of a column together, so that the first round is neither deaf nor stuck.
+    const double strength = 10.0 * target.weight.squaredNorm() /
+                            static_cast<double>(std::max<Eigen::Index>(1, target.value.cols()));
+    for (int round = 0; round < most_rounds; ++round) {
+        append(fit.trace, minimise_non_negative(model, fit.parameters, settings, begin));
+        const Eigen::VectorXd sums = target.photon_sums(model.matrix(fit.parameters));
+        // In units of a whole photon, which is 1 / scale.
+        const Eigen::VectorXd limit = target.budget;
+        if (!penalty.update(sums, limit, strength, tolerance / target.scale)) {
+            fit.chi_squared = target.chi_squared(model.matrix(fit.parameters));
+            return fit;
+        }
+        if (!fit.trace.converged)
+            break;
+    }
+    fit.chi_squared = target.chi_squared(model.matrix(fit.parameters));
+    if (fit.trace.converged)
+        fit.trace.stop_reason = "the photon balance was not reached";
+    fit.trace.converged = false;
+    return fit;
+}
+
+} // namespace reradiant

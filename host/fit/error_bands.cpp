@@ -1,0 +1,184 @@
+#include "host/fit/error_bands.h"
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <ceres/loss_function.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace reradiant {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+constexpr double determined = 1e-7; ///< of the largest singular value
+constexpr double held_beyond = 2.0; ///< standard errors
+
+/// Weight that a robust loss leaves to every entry (iteratively reweighted least squares).
+Matrix robust_weights(const Matrix& weighted_residual, RobustLoss loss) {
+    const std::unique_ptr<ceres::LossFunction> function(make_loss(loss));
+    Matrix weights = Matrix::Ones(weighted_residual.rows(), weighted_residual.cols());
+    for (Eigen::Index k = 0; function && k < weights.size(); ++k) {
+        double rho[3];
+        function->Evaluate(weighted_residual(k) * weighted_residual(k), rho);
+        weights(k) = std::sqrt(rho[1]);
+    }
+    return weights;
+}
+
+/// Rows of used entries, weighted, and one row for every active photon balance.
+Matrix data_jacobian(const Matrix& entries, const Matrix& weights, const FitTarget& target,
+                     const PhotonPenalty& penalty) {
+    const Eigen::Index used = (weights.array() > 0.0).count();
+    const Eigen::Index active = (penalty.multiplier.array() > 0.0).count();
+    Matrix rows(used + active, entries.cols());
+    Eigen::Index next = 0;
+    for (Eigen::Index k = 0; k < weights.size(); ++k)
+        if (weights(k) > 0.0)
+            rows.row(next++) = weights(k) * entries.row(k);
+    const Eigen::Index bands = target.value.rows();
+    for (Eigen::Index i = 0; i < target.value.cols(); ++i)
+        if (penalty.multiplier(i) > 0.0)
+            rows.row(next++) = std::sqrt(penalty.strength(i)) * target.photons.col(i).transpose() *
+                               entries.middleRows(i * bands, bands);
+    return rows;
+}
+
+std::vector<bool> firmly_at_zero(const TermModel& model, const Vector& parameters,
+                                 const Vector& gradient, const Matrix& jacobian) {
+    std::vector<bool> held;
+    for (Eigen::Index k = 0; k < parameters.size(); ++k)
+        held.push_back(!model.may_be_negative(k) && parameters(k) <= 0.0 &&
+                       gradient(k) > held_beyond * jacobian.col(k).norm());
+    return held;
+}
+
+/// The curves normalised as FitResult has them, stacked into one vector: emission, then excitation.
+Vector stacked(const FactorCurves& curves, const FitTarget& target) {
+    const double steps = target.emission.step_nm / target.excitation.step_nm;
+    Vector all(curves.emission.size() + curves.excitation.size());
+    for (Eigen::Index k = 0; k < curves.emission.cols(); ++k) {
+        const Eigen::Index rows = curves.emission.rows(), columns = curves.excitation.rows();
+        const double sum = curves.emission.col(k).sum();
+        all.segment(k * rows, rows) =
+            curves.emission.col(k) / std::max(sum * target.emission.step_nm, 1e-300);
+        all.segment(curves.emission.size() + k * columns, columns) =
+            target.scale * steps * sum * curves.excitation.col(k);
+    }
+    return all;
+}
+
+} // namespace
+
+Vector Covariance::sigma(const Matrix& jacobian) const {
+    return (jacobian * root).rowwise().norm();
+}
+
+Covariance covariance_of(const Matrix& jacobian, const std::vector<bool>& held, double variance) {
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index k = 0; k < jacobian.cols(); ++k)
+        if (!held[static_cast<std::size_t>(k)] && jacobian.col(k).squaredNorm() > 0.0)
+            free.push_back(k);
+    const auto count = static_cast<Eigen::Index>(free.size());
+    Covariance result;
+    result.free = static_cast<int>(count);
+    if (count == 0 || jacobian.rows() == 0) {
+        result.root = Matrix::Zero(jacobian.cols(), 0);
+        return result;
+    }
+    Matrix scaled = jacobian(Eigen::all, free);
+    const Vector lengths = scaled.colwise().norm().transpose();
+    scaled *= lengths.cwiseInverse().asDiagonal();
+    // The triangle of a QR decomposition has the same singular values, but far fewer rows.
+    if (scaled.rows() > count) {
+        const Eigen::HouseholderQR<Matrix> qr(scaled);
+        scaled = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+    }
+    const Eigen::BDCSVD<Matrix> svd(scaled, Eigen::ComputeThinV);
+    const Vector& values = svd.singularValues();
+    result.rank = static_cast<int>((values.array() > determined * values(0)).count());
+    const Matrix part =
+        lengths.cwiseInverse().asDiagonal() * svd.matrixV().leftCols(result.rank) *
+        (std::sqrt(variance) * values.head(result.rank).cwiseInverse()).asDiagonal();
+    result.root = Matrix::Zero(jacobian.cols(), result.rank);
+    for (Eigen::Index k = 0; k < count; ++k)
+        result.root.row(free[static_cast<std::size_t>(k)]) = part.row(k);
+    return result;
+}
+
+Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitTarget& target,
+                         const PhotonPenalty& penalty, RobustLoss loss, bool noise_is_estimated) {
+    const Matrix entries = model.entry_jacobian(fit.parameters);
+    const Matrix residual =
+        (model.matrix(fit.parameters) - target.value).cwiseProduct(target.weight);
+    const Matrix robust = robust_weights(residual, loss);
+    const Matrix jacobian =
+        data_jacobian(entries, target.weight.cwiseProduct(robust), target, penalty);
+    Vector seen(jacobian.rows());
+    seen.setZero();
+    Eigen::Index next = 0;
+    for (Eigen::Index k = 0; k < residual.size(); ++k)
+        if (target.weight(k) > 0.0)
+            seen(next++) = residual(k) * robust(k);
+    const double freedom =
+        std::max(1.0, static_cast<double>(next) -
+                          static_cast<double>((fit.parameters.array() > 0.0).count()));
+    const double reduced = seen.squaredNorm() / freedom;
+    return covariance_of(
+        jacobian, firmly_at_zero(model, fit.parameters, jacobian.transpose() * seen, jacobian),
+        noise_is_estimated ? reduced : std::max(1.0, reduced));
+}
+
+NormalisedCurves normalised_curves(const TermModel& model, const Vector& parameters,
+                                   const Covariance& covariance, const FitTarget& target) {
+    const FactorCurves curves = model.curves(parameters);
+    const Vector value = stacked(curves, target);
+    Matrix jacobian(value.size(), parameters.size());
+    const double size = std::max(parameters.cwiseAbs().maxCoeff(), 1e-300);
+    for (Eigen::Index k = 0; k < parameters.size(); ++k) {
+        Vector moved = parameters;
+        const double step = 1e-6 * std::max(std::abs(parameters(k)), 1e-3 * size);
+        moved(k) += step;
+        jacobian.col(k) = (stacked(model.curves(moved), target) - value) / step;
+    }
+    const Vector sigma = covariance.sigma(jacobian);
+    const Eigen::Index split = curves.emission.size();
+    const auto shaped = [](const Vector& list, Eigen::Index first, const Matrix& like) {
+        return Matrix(Eigen::Map<const Matrix>(list.data() + first, like.rows(), like.cols()));
+    };
+    return {{shaped(value, 0, curves.emission), shaped(sigma, 0, curves.emission)},
+            {shaped(value, split, curves.excitation), shaped(sigma, split, curves.excitation)}};
+}
+
+EmittedPhotons emitted_photons(const TermModel& model, const Vector& parameters,
+                               const Matrix& jacobian, const Covariance& covariance,
+                               const FitTarget& target) {
+    const FactorCurves curves = model.curves(parameters);
+    const Matrix photons = target.photons.cwiseProduct(target.allowed) * target.scale;
+    EmittedPhotons emitted;
+    emitted.share.resize(target.value.cols(), model.terms());
+    for (int k = 0; k < model.terms(); ++k)
+        emitted.share.col(k) = (curves.emission.col(k) * curves.excitation.col(k).transpose())
+                                   .cwiseProduct(photons)
+                                   .colwise()
+                                   .sum()
+                                   .transpose();
+    emitted.sigma_of_sum = [&, photons](Eigen::Index term, const std::vector<Eigen::Index>& bands) {
+        Vector slope = Vector::Zero(parameters.size());
+        for (const Eigen::Index i : bands)
+            slope += jacobian.middleRows(i * photons.rows(), photons.rows()).transpose() *
+                     photons.col(i);
+        // The terms share no parameter.
+        for (Eigen::Index p = 0; p < slope.size(); ++p)
+            if (model.term_of(p) != term)
+                slope(p) = 0.0;
+        return covariance.sigma(slope.transpose())(0);
+    };
+    return emitted;
+}
+
+} // namespace reradiant

@@ -1,0 +1,133 @@
+#include "host/fit/factor_fit.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace reradiant {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Spline spacings that the evidence chooses from, in steps of the grid, beside one number a band.
+constexpr double spacings_in_steps[] = {1.5, 2.0, 3.0};
+/// Starts that are followed to the end.
+constexpr std::size_t finalists = 2;
+
+/// Values of a curve at bands that no used entry depends on, from their neighbours on both sides.
+void bridge_gaps(const Eigen::ArrayXd& used, Eigen::MatrixXd& curves) {
+    Eigen::Index last = -1;
+    for (Eigen::Index band = 0; band < used.size(); ++band) {
+        if (used(band) <= 0.0)
+            continue;
+        for (Eigen::Index gap = last + 1; last >= 0 && gap < band; ++gap) {
+            const double share = static_cast<double>(gap - last) / static_cast<double>(band - last);
+            curves.row(gap) = (1.0 - share) * curves.row(last) + share * curves.row(band);
+        }
+        last = band;
+    }
+}
+
+class FactorFitter {
+public:
+    FactorFitter(const FitTarget& target, const FitSettings& settings, Evidence evidence,
+                 Clock::time_point begin)
+        : target_(target), settings_(settings), evidence_(evidence), begin_(begin) {}
+
+    FittedCandidate fit(int rank, double spacing_nm, const std::vector<FactorCurves>& starts) {
+        FittedCandidate best;
+        for (std::size_t k = 0; k < std::min(starts.size(), finalists); ++k) {
+            FittedCandidate candidate = fit_from(rank, spacing_nm, starts[k]);
+            const bool better = candidate.fit.trace.converged != best.fit.trace.converged
+                                    ? candidate.fit.trace.converged
+                                    : candidate.criterion < best.criterion;
+            if (!best.model || better)
+                best = std::move(candidate);
+        }
+        return best;
+    }
+
+    std::vector<FactorCurves> starts(int rank, const FactorCurves& smaller) const {
+        return factor_starts(target_, rank, smaller, settings_.starts, settings_.seed);
+    }
+
+    FactorCurves no_curves() const {
+        return {Eigen::MatrixXd(target_.value.rows(), 0), Eigen::MatrixXd(target_.value.cols(), 0)};
+    }
+
+private:
+    FittedCandidate fit_from(int rank, double spacing_nm, const FactorCurves& start) {
+        const SmoothBasis emission = spline_basis(target_.emission, spacing_nm);
+        const SmoothBasis excitation = spline_basis(target_.excitation, spacing_nm);
+        FittedCandidate candidate;
+        candidate.penalty = std::make_unique<PhotonPenalty>(target_.value.cols());
+        auto model = std::make_unique<FactorModel>(target_, rank, emission, excitation,
+                                                   *candidate.penalty, settings_.loss);
+        Eigen::VectorXd parameters =
+            model->parameters(coefficients_near(emission, start.emission),
+                              coefficients_near(excitation, start.excitation));
+        model->balance(parameters);
+        candidate.fit = minimise_within_budget(*model, target_, *candidate.penalty, parameters,
+                                               settings_.solver, begin_);
+        model->balance(candidate.fit.parameters);
+        if (emission.is_per_band() && excitation.is_per_band())
+            bridge(*model, candidate.fit.parameters);
+        // One number a term is only a choice of unit; numbers at zero were not needed.
+        const Eigen::Index numbers = (candidate.fit.parameters.array() > 0.0).count() - rank;
+        candidate.criterion = information_criterion(candidate.fit.chi_squared, numbers,
+                                                    target_.used_count(), evidence_);
+        candidate.spacing_nm = emission.spacing_nm;
+        candidate.model = std::move(model);
+        return candidate;
+    }
+
+    void bridge(const FactorModel& model, Eigen::VectorXd& parameters) const {
+        FactorCurves curves = model.curves(parameters);
+        bridge_gaps(target_.weight.rowwise().sum().array(), curves.emission);
+        bridge_gaps(target_.weight.colwise().sum().transpose().array(), curves.excitation);
+        parameters = model.parameters(curves.emission, curves.excitation);
+    }
+
+    const FitTarget& target_;
+    const FitSettings& settings_;
+    Evidence evidence_;
+    Clock::time_point begin_;
+};
+
+FactorCurves curves_of(const FittedCandidate& candidate) {
+    return candidate.model->curves(candidate.fit.parameters);
+}
+
+} // namespace
+
+FittedCandidate fit_factors(const FitTarget& target, const FitSettings& settings, Evidence evidence,
+                            Clock::time_point begin) {
+    FactorFitter fitter(target, settings, evidence, begin);
+    const double spacing_nm = settings.smooth_nm.value_or(0.0);
+    FactorCurves smaller = fitter.no_curves();
+    if (settings.rank) {
+        for (int rank = 1; rank < *settings.rank; ++rank)
+            smaller = fitter.starts(rank, smaller).front();
+        return fitter.fit(*settings.rank, spacing_nm, fitter.starts(*settings.rank, smaller));
+    }
+    FittedCandidate best = dark_candidate(target, evidence);
+    for (int rank = 1; rank <= largest_factor_rank; ++rank) {
+        FittedCandidate next = fitter.fit(rank, spacing_nm, fitter.starts(rank, smaller));
+        smaller = curves_of(next);
+        if (next.criterion >= best.criterion)
+            break;
+        best = std::move(next);
+    }
+    if (!best.model || settings.smooth_nm)
+        return best;
+    const FactorCurves start = curves_of(best);
+    for (const double steps : spacings_in_steps) {
+        FittedCandidate smooth =
+            fitter.fit(best.model->terms(), steps * target.emission.step_nm, {start});
+        if (smooth.criterion < best.criterion && smooth.fit.trace.converged)
+            best = std::move(smooth);
+    }
+    return best;
+}
+
+} // namespace reradiant

@@ -1,0 +1,192 @@
+#include "host/fit/fit.h"
+
+#include "host/error.h"
+#include "host/fit/error_bands.h"
+#include "host/fit/factor_fit.h"
+#include "host/fit/fit_checks.h"
+#include "host/fit/gaussian_fit.h"
+#include "host/fit/matrix_fit.h"
+#include "host/fit/prepared_target.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace reradiant {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+using Clock = std::chrono::steady_clock;
+
+void check_rank(const FitSettings& settings) {
+    const int most =
+        settings.model == FitModel::Factors ? largest_factor_rank : largest_gaussian_count;
+    if (settings.rank && settings.model == FitModel::Matrix)
+        throw_input_error({}, "--rank does not go with the model matrix",
+                          "leave it out or choose factors or gaussians");
+    if (settings.rank && (*settings.rank < 1 || *settings.rank > most))
+        throw_input_error(
+            {}, fmt::format("--rank {} is out of range", *settings.rank),
+            fmt::format("{} takes 1 to {} terms", fit_model_name(settings.model), most));
+}
+
+void refuse_too_few_data(const BispectralData& data, Eigen::Index used, Eigen::Index needed) {
+    if (used < needed)
+        throw_input_error(
+            {data.file.string()},
+            fmt::format("{} usable entries cannot determine {} numbers", used, needed),
+            "measure more bands, or lower --rank or raise --smooth-nm");
+}
+
+void set_error_bands(const FittedCandidate& candidate, const PreparedTarget& prepared,
+                     const FitSettings& settings, FitResult& result) {
+    const TermModel& model = *candidate.model;
+    const Vector& parameters = candidate.fit.parameters;
+    const Covariance covariance =
+        covariance_at(model, candidate.fit, prepared.target, *candidate.penalty, settings.loss,
+                      prepared.noise_is_estimated);
+    const Matrix jacobian = model.entry_jacobian(parameters);
+    result.sigma = prepared.target.scale *
+                   covariance.sigma(jacobian).reshaped(result.sigma.rows(), result.sigma.cols());
+    // Where a whole column is missing, the model only bridges its neighbours.
+    for (Eigen::Index i = 0; i < result.data.cols(); ++i)
+        if ((result.data.col(i).array() != result.data.col(i).array()).all())
+            result.sigma.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+    NormalisedCurves curves = normalised_curves(model, parameters, covariance, prepared.target);
+    result.emission = std::move(curves.emission);
+    result.excitation = std::move(curves.excitation);
+    result.quantum_yield =
+        quantum_yields(emitted_photons(model, parameters, jacobian, covariance, prepared.target),
+                       prepared.diagonal, prepared.diagonal_sigma, result.warnings);
+    result.parameters = covariance.free - model.terms() * model.free_units();
+    result.covariance_rank = std::min(covariance.rank, result.parameters);
+    if (result.covariance_rank < result.parameters)
+        result.warnings.push_back(fmt::format(
+            "the data leave {} combinations of the model's numbers undetermined: the matrix is "
+            "known, but how its terms share it is not",
+            result.parameters - result.covariance_rank));
+}
+
+void take_terms(const BispectralData& data, const FittedCandidate& candidate,
+                const PreparedTarget& prepared, const FitSettings& settings, FitResult& result) {
+    result.trace = candidate.fit.trace;
+    const auto used = prepared.target.used_count();
+    const Eigen::Index needed = (candidate.fit.parameters.array() != 0.0).count();
+    result.reduced_chi_squared =
+        candidate.fit.chi_squared / static_cast<double>(std::max<Eigen::Index>(1, used - needed));
+    if (!candidate.model) {
+        result.notes.push_back("no fluorescence is seen in the data beyond their noise");
+        return;
+    }
+    refuse_too_few_data(data, used, needed);
+    result.rank = candidate.model->terms();
+    result.spacing_nm = candidate.spacing_nm;
+    result.bytes = 4 * candidate.model->stored_numbers();
+    result.matrix.values =
+        prepared.target.scale * candidate.model->matrix(candidate.fit.parameters);
+    set_error_bands(candidate, prepared, settings, result);
+}
+
+void take_matrix(const MatrixFit& fit, const PreparedTarget& prepared, FitResult& result) {
+    result.trace = fit.fit.trace;
+    result.bytes = 4 * fit.stored_numbers;
+    result.matrix.values = prepared.target.scale * fit.value;
+    result.sigma = prepared.target.scale * fit.sigma;
+    const double freedom =
+        std::max(1.0, static_cast<double>(prepared.target.used_count()) - fit.effective_numbers);
+    result.reduced_chi_squared = fit.fit.chi_squared / freedom;
+    result.parameters = static_cast<int>(fit.stored_numbers);
+    result.covariance_rank = static_cast<int>(std::lround(fit.effective_numbers));
+    result.quantum_yield =
+        quantum_yields(fit.emitted, prepared.diagonal, prepared.diagonal_sigma, result.warnings);
+}
+
+void take_model(const BispectralData& data, const PreparedTarget& prepared,
+                const FitSettings& settings, Clock::time_point begin, FitResult& result) {
+    const Evidence evidence =
+        prepared.noise_is_estimated ? Evidence::EstimatedNoise : Evidence::KnownNoise;
+    const FitTarget& target = prepared.target;
+    if (target.value.isZero(0.0))
+        take_terms(data, dark_candidate(target, evidence), prepared, settings, result);
+    else if (settings.model == FitModel::Matrix)
+        take_matrix(fit_matrix(target, settings, prepared.noise_is_estimated, begin), prepared,
+                    result);
+    else
+        take_terms(data,
+                   settings.model == FitModel::Factors
+                       ? fit_factors(target, settings, evidence, begin)
+                       : fit_gaussians(target, settings, evidence, begin),
+                   prepared, settings, result);
+}
+
+FitResult empty_result(const BispectralData& data, const PreparedTarget& prepared,
+                       const FitSettings& settings) {
+    FitResult result;
+    result.model = settings.model;
+    result.matrix.emission = data.emission;
+    result.matrix.excitation = data.excitation;
+    result.matrix.values = Matrix::Zero(data.emission.count, data.excitation.count);
+    result.matrix.anti_stokes_allowed = settings.anti_stokes;
+    result.matrix.geometry = data.geometry;
+    result.sigma = result.matrix.values;
+    result.data = data.blocks.front().value;
+    result.used = (prepared.target.weight.array() > 0.0).cast<double>();
+    result.noise = prepared.noise;
+    result.noise_is_estimated = prepared.noise_is_estimated;
+    result.notes = prepared.notes;
+    return result;
+}
+
+FitResult fit_bare(const BispectralData& data, const FitSettings& settings,
+                   Clock::time_point begin) {
+    const PreparedTarget prepared = prepare_target(
+        data, {settings.anti_stokes, settings.spill_nm.value_or(data.emission.step_nm)});
+    FitResult result = empty_result(data, prepared, settings);
+    take_model(data, prepared, settings, begin, result);
+    pass_diagonal(prepared, result);
+    measure_errors(prepared, result);
+    return result;
+}
+
+} // namespace
+
+FitModel fit_model_from_name(const std::string& name) {
+    for (const FitModel model : {FitModel::Factors, FitModel::Gaussians, FitModel::Matrix})
+        if (name == fit_model_name(model))
+            return model;
+    throw_input_error({}, fmt::format("--model {} is not known", name),
+                      "write factors, gaussians or matrix");
+}
+
+const char* fit_model_name(FitModel model) {
+    switch (model) {
+    case FitModel::Gaussians:
+        return "gaussians";
+    case FitModel::Matrix:
+        return "matrix";
+    case FitModel::Factors:
+        break;
+    }
+    return "factors";
+}
+
+FitResult fit_reradiation(const BispectralData& data, const FitSettings& settings) {
+    const Clock::time_point begin = Clock::now();
+    check_rank(settings);
+    const SubstrateData substrate =
+        invert_stack(data, settings.stack.value_or(LayerStack{}), settings.unknown);
+    FitResult result = fit_bare(substrate.data, settings, begin);
+    result.notes.insert(result.notes.begin(), substrate.notes.begin(), substrate.notes.end());
+    if (settings.unknown.any())
+        result.stack = substrate.estimate;
+    check_fit(result);
+    result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    return result;
+}
+
+} // namespace reradiant

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "host/fit/budget_solver.h"
+
+#include <limits>
+#include <memory>
+
+namespace reradiant {
+
+/// What is known of the noise when models are compared.
+enum class Evidence {
+    KnownNoise,    ///< standard errors came with the data
+    EstimatedNoise ///< they were estimated, so their scale is uncertain, too
+};
+
+/// Schwarz's criterion (1978), -2 log evidence up to a constant: chi^2 + p log n, or with the
+/// noise's scale integrated out n log(1 + chi^2 / n) + p log n, where the estimate counts as much
+/// as the data. Lower is better.
+double information_criterion(double chi_squared, Eigen::Index parameters, Eigen::Index data,
+                             Evidence evidence);
+
+/// A model after its fit. A null model stands for no fluorescence.
+struct FittedCandidate {
+    std::unique_ptr<PhotonPenalty> penalty; ///< the model refers to it
+    std::unique_ptr<TermModel> model;
+    ModelFit fit;
+    double criterion = std::numeric_limits<double>::infinity();
+    double spacing_nm = 0.0;
+};
+
+/// No fluorescence at all: what every model is compared with.
+FittedCandidate dark_candidate(const FitTarget& target, Evidence evidence);
+
+} // namespace reradiant

@@ -1,0 +1,150 @@
+#include "host/fit/stack_inversion.h"
+
+#include "host/error.h"
+#include "host/fit/prepared_target.h"
+#include "host/fit/stack_response.h"
+#include "host/fit/unknown_stack.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace reradiant {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+/// "45/0", as the geometry line of a re-radiation CSV has it.
+std::optional<BispectralGeometry> geometry_from_text(const std::string& text) {
+    BispectralGeometry geometry{0.0, 0.0, 0.0};
+    const char* const end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, geometry.theta_i_deg);
+    if (first.ec != std::errc{} || first.ptr == end || *first.ptr != '/')
+        return std::nullopt;
+    const auto second = std::from_chars(first.ptr + 1, end, geometry.theta_o_deg);
+    const bool good = second.ec == std::errc{} && second.ptr == end &&
+                      geometry.theta_i_deg >= 0.0 && geometry.theta_i_deg < 90.0 &&
+                      geometry.theta_o_deg >= 0.0 && geometry.theta_o_deg < 90.0;
+    return good ? std::optional(geometry) : std::nullopt;
+}
+
+/// The data with a geometry in every block.
+BispectralData with_geometries(BispectralData data) {
+    for (BispectralBlock& block : data.blocks) {
+        if (!block.geometry)
+            block.geometry = geometry_from_text(data.geometry);
+        if (!block.geometry)
+            throw_input_error({data.file.string()},
+                              "what a stack does cannot be undone without the directions of light "
+                              "and detector",
+                              "add a line `# geometry: 45/0` or give the CSV of `measure`");
+    }
+    return data;
+}
+
+/// Squared weights of every block: 1 / sigma^2, estimated where the data have none.
+std::vector<Matrix> block_weights(const BispectralData& data, bool& is_estimated) {
+    std::vector<Matrix> weights;
+    is_estimated = true;
+    for (const BispectralBlock& block : data.blocks) {
+        const Matrix known = (block.value.array() == block.value.array()).cast<double>();
+        const Matrix value = (known.array() > 0.0).select(block.value, 0.0 * known);
+        const double floor = std::max(1e-6 * value.cwiseAbs().maxCoeff(), 1e-300);
+        const Matrix allowed =
+            known.cwiseProduct(allowed_entries(data.emission, data.excitation, false));
+        const double estimate = std::max(floor, estimated_noise(value, allowed));
+        Matrix weight = Matrix::Zero(value.rows(), value.cols());
+        for (Eigen::Index k = 0; k < weight.size(); ++k) {
+            if (known(k) == 0.0)
+                continue;
+            const bool given = std::isfinite(block.sigma(k));
+            is_estimated = is_estimated && !given;
+            weight(k) = std::pow(given ? std::max(block.sigma(k), floor) : estimate, -2);
+        }
+        weights.push_back(weight);
+    }
+    return weights;
+}
+
+/// Adds what the uncertainty of the stack's numbers does to every entry, direction by direction.
+void add_stack_variance(const UnknownStack& unknown, const UnknownStackFit& fit,
+                        const BispectralData& data, const std::vector<Matrix>& weights,
+                        UncertainMatrix& bare) {
+    const auto inverted = [&](const Eigen::VectorXd& numbers) {
+        const StackResponse response = stack_response(unknown.stack(numbers), data);
+        return bare_matrix(under_the_stack(data, response, weights), response.internal_reflectance,
+                           data)
+            .value;
+    };
+    for (Eigen::Index k = 0; k < fit.root.cols(); ++k) {
+        const Eigen::VectorXd step = 1e-3 * fit.root.col(k);
+        const Matrix slope = (inverted(fit.numbers + step) - inverted(fit.numbers - step)) / 2e-3;
+        bare.variance += slope.cwiseAbs2();
+    }
+}
+
+void note_dark_bands(const BispectralData& data, std::vector<std::string>& notes) {
+    const WavelengthGrid grid = common_grid(data);
+    if (data.emission.count < grid.count && data.emission.from_nm > data.excitation.from_nm)
+        notes.push_back(fmt::format("emission below {} nm was not measured and is taken as dark in "
+                                    "the interreflections",
+                                    data.emission.from_nm));
+}
+
+} // namespace
+
+UnknownLayers unknown_layers_from_names(const std::vector<std::string>& names) {
+    UnknownLayers unknown;
+    for (const std::string& name : names)
+        if (name == "thickness")
+            unknown.thickness = true;
+        else if (name == "absorption")
+            unknown.absorption = true;
+        else if (name == "ior")
+            unknown.ior = true;
+        else
+            throw_input_error({}, fmt::format("--unknown {} is not known", name),
+                              "write thickness, absorption, ior or a list of them");
+    return unknown;
+}
+
+SubstrateData invert_stack(const BispectralData& data, const LayerStack& stack,
+                           const UnknownLayers& unknown) {
+    const bool is_bare = data.blocks.size() == 1 && !data.blocks.front().geometry;
+    if (stack.layers.empty() && unknown.any())
+        throw_input_error({data.file.string()},
+                          "something of a stack is unknown, but there is none",
+                          "give --stack, too");
+    if (stack.layers.empty() && is_bare)
+        return {data, stack, {}, {}};
+    const BispectralData measured = with_geometries(data);
+    bool is_estimated = true;
+    const std::vector<Matrix> weights = block_weights(measured, is_estimated);
+    SubstrateData result{{}, stack, {}, {}};
+    const UnknownStack numbers(stack, unknown);
+    UnknownStackFit fit;
+    if (unknown.any()) {
+        fit = fit_unknown_stack(numbers, measured, weights);
+        result.stack = numbers.stack(fit.numbers);
+        result.estimate = fit.estimate;
+    }
+    const StackResponse response = stack_response(result.stack, measured);
+    UncertainMatrix bare = bare_matrix(under_the_stack(measured, response, weights),
+                                       response.internal_reflectance, measured);
+    if (unknown.any())
+        add_stack_variance(numbers, fit, measured, weights, bare);
+    result.data = measured;
+    BispectralBlock block{std::nullopt, bare.value, bare.variance.cwiseSqrt()};
+    if (is_estimated)
+        block.sigma.setConstant(std::numeric_limits<double>::quiet_NaN());
+    result.data.blocks.assign(1, block);
+    note_dark_bands(measured, result.notes);
+    return result;
+}
+
+} // namespace reradiant

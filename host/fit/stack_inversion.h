@@ -1,0 +1,52 @@
+#pragma once
+
+#include "host/fit/bispectral_data.h"
+#include "host/layers/stack.h"
+
+#include <Eigen/Core>
+
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+/// What is not known about the stack above a sample.
+struct UnknownLayers {
+    bool thickness = false;  ///< of every layer that absorbs, one factor each
+    bool absorption = false; ///< the scale of every layer's absorption, one factor each
+    bool ior = false;        ///< of every layer, one addend each
+
+    bool any() const { return thickness || absorption || ior; }
+};
+/// A list like `thickness,ior`; input Error for another name.
+UnknownLayers unknown_layers_from_names(const std::vector<std::string>& names);
+
+/// What the data say about the unknown numbers of a stack.
+struct StackEstimate {
+    std::vector<std::string> names; ///< "thickness of layer 1", ...
+    Eigen::VectorXd value, sigma;   ///< sigma infinite: the data do not determine it
+    Eigen::MatrixXd correlation;    ///< of the numbers; NaN where undetermined
+    int rank = 0;                   ///< numbers that the data tell apart
+    double reduced_chi_squared = 0.0;
+    /// One sentence a group of numbers that the data cannot tell apart; empty when all are.
+    std::vector<std::string> ambiguities;
+};
+
+/// Data of a sample under a stack turned into those of the bare substrate.
+struct SubstrateData {
+    BispectralData data; ///< one block without geometry
+    LayerStack stack;    ///< with the unknown numbers as found
+    StackEstimate estimate;
+    std::vector<std::string> notes;
+};
+
+/// Inverts model B (DESIGN 2): every block is pi f = T_up T_down B / n_k^2 with B = M (I - diag(r)
+/// M)^-1, so B is the weighted mean over the blocks and M = B (I + diag(r) B)^-1. Unknown numbers
+/// of the stack are those that make the blocks agree best (Ceres; B itself is projected out, Golub
+/// and Pereyra 1973). Emission bands that were not measured are taken as dark, which a note says.
+/// Input Error when blocks without geometry meet a stack, when grids share no common one, or when
+/// numbers are unknown but there is one geometry only.
+SubstrateData invert_stack(const BispectralData& data, const LayerStack& stack,
+                           const UnknownLayers& unknown);
+
+} // namespace reradiant

@@ -1,0 +1,122 @@
+#include "host/measure/walk_measurement.h"
+
+#include "host/layers/walk_estimate.h"
+#include "host/measure/surface_angles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace reradiant {
+
+namespace {
+
+double radians(double degrees) {
+    return degrees * std::numbers::pi / 180.0;
+}
+
+/// An outgoing direction with the angles that it was asked for by.
+struct Detector {
+    double theta_deg, phi_deg;
+    kernels::Vec3 w;
+};
+
+std::vector<Detector> detectors_of(const MeasureRequest& request) {
+    std::vector<Detector> detectors;
+    for (const double theta : request.theta_o_deg) {
+        for (const double phi : request.phi_deg) {
+            detectors.push_back({theta, phi, direction_at(std::cos(radians(theta)), radians(phi))});
+        }
+    }
+    return detectors;
+}
+
+/// Appends the rows of one pair of directions. `matrix` says which wavelength pairs are possible.
+void add_rows(Measurement& measurement, const Eigen::MatrixXd& matrix, const MeasureRow& angles,
+              const WalkTally::Parts& mean, const WalkTally::Parts& error) {
+    const auto row = [&](int i, int o, double value, double standard_error, MeasuredPart part) {
+        MeasureRow& added = measurement.rows.emplace_back(angles);
+        added.lambda_i_nm = measurement.bands.centre_nm(i);
+        added.lambda_o_nm = measurement.bands.centre_nm(o);
+        added.value = value;
+        added.standard_error = standard_error;
+        added.part = part;
+    };
+    const int bands = measurement.bands.count;
+    const bool fluorescent = mean.diffuse.cols() == bands && !matrix.isDiagonal(0.0);
+    for (int i = 0; i < bands; ++i) {
+        for (int o = 0; o < bands; ++o) {
+            if (o == i || (fluorescent && (o > i || matrix(o, i) != 0.0))) {
+                const int column = fluorescent ? i : 0;
+                row(i, o, mean.diffuse(o, column), error.diffuse(o, column), MeasuredPart::Diffuse);
+            }
+        }
+    }
+    for (int band = 0; band < bands; ++band) {
+        row(band, band, mean.specular(band), error.specular(band), MeasuredPart::Specular);
+    }
+}
+
+void add_notes(Measurement& measurement, const LayerWalk& walk, long samples, unsigned seed,
+               double delta, double lost) {
+    const auto add = [&](const std::string& note) { measurement.notes.push_back(note); };
+    add(fmt::format("random walk, {} paths for each theta_i, seed {}, {}", samples, seed,
+                    walk.serves_all_bands() ? "the same for all bands"
+                                            : "for each excitation band"));
+    if (delta > 0.0 && measurement.hemispherical) {
+        add("hemispherical rows include the mirror reflection of smooth surfaces");
+    } else if (delta > 0.0) {
+        add(fmt::format("the mirror reflection of smooth surfaces (weight up to about {:.3g}) is a "
+                        "delta and left out of these directional rows",
+                        delta));
+    }
+    if (lost > 0.0) {
+        add(fmt::format("scattering = \"single\" loses up to about {:.3g} of the incident flux "
+                        "between facets on its way to the substrate",
+                        lost));
+    }
+}
+
+} // namespace
+
+Measurement measure_by_walk(const LayerStack& stack, const WalkSubstrate& substrate,
+                            const WavelengthGrid& bands, const MeasureRequest& request) {
+    Measurement measurement;
+    measurement.bands = bands;
+    measurement.model = Model::Walk;
+    measurement.hemispherical = request.hemispherical;
+    const LayerWalk walk(stack, substrate, bands.centres_nm());
+    const std::vector<Detector> detectors =
+        request.hemispherical ? std::vector<Detector>{} : detectors_of(request);
+    std::vector<kernels::Vec3> wo;
+    for (const Detector& detector : detectors) {
+        wo.push_back(detector.w);
+    }
+    const long samples = request.samples > 0 ? request.samples : default_walk_samples;
+    double delta = 0.0, lost = 0.0;
+    for (const double theta_i : request.theta_i_deg) {
+        const WalkEstimate estimate =
+            estimate_walk(walk, direction_at(std::cos(radians(theta_i)), 0.0), wo,
+                          static_cast<std::uint64_t>(samples), request.seed);
+        const WalkTally &mean = estimate.mean, &error = estimate.standard_error;
+        MeasureRow angles{theta_i, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
+        if (request.hemispherical) {
+            add_rows(measurement, substrate.matrix, angles, mean.hemispherical,
+                     error.hemispherical);
+        }
+        for (std::size_t k = 0; k < detectors.size(); ++k) {
+            angles.theta_o_deg = detectors[k].theta_deg;
+            angles.phi_deg = detectors[k].phi_deg;
+            add_rows(measurement, substrate.matrix, angles, mean.directional[k],
+                     error.directional[k]);
+        }
+        delta = std::max(delta, mean.delta.maxCoeff());
+        lost = std::max(lost, mean.lost.maxCoeff());
+    }
+    add_notes(measurement, walk, samples, request.seed, delta, lost);
+    return measurement;
+}
+
+} // namespace reradiant

@@ -1,0 +1,198 @@
+#include "host/render/walk_tables.h"
+
+#include "host/error.h"
+#include "host/layers/facet_reflectance.h"
+#include "host/render/substrate_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace reradiant {
+
+namespace {
+
+/// Distances in a scattering slab are sampled with extinctions down to this share of the largest:
+/// where a lane's is smaller still, weights bounded by WALK_REFERENCES make up for it.
+constexpr double least_reference = 1e-3;
+
+void refuse(const Material& material, const std::string& file, const char* what,
+            const char* remedy) {
+    throw_input_error({file}, fmt::format("material '{}': {}", material.name, what), remedy);
+}
+
+bool walks_between_v_cavities(Distribution distribution, double alpha, Scattering scattering) {
+    return alpha > 0.0 && distribution == Distribution::Blinn && scattering == Scattering::Multiple;
+}
+
+void check_material(const Material& material, const std::string& file) {
+    const LayerStack& stack = material.stack;
+    const Conductor& conductor = material.substrate.conductor;
+    const bool has_conductor = material.substrate.type == SubstrateType::Conductor;
+    if (stack.is_dispersive())
+        refuse(material, file, "walk renders stacks whose IOR does not depend on wavelength",
+               "give numbers for ior, use adding or weidlich-wilkie, or measure the material");
+    if (stack.has_films())
+        refuse(material, file, "walk renders no films between dielectrics", "use weidlich-wilkie");
+    if (stack.has_flakes())
+        refuse(material, file, "walk renders no flakes", "use weidlich-wilkie");
+    bool v_cavities =
+        has_conductor &&
+        walks_between_v_cavities(conductor.distribution, conductor.alpha, conductor.scattering);
+    for (const Layer& layer : stack.layers)
+        v_cavities |= walks_between_v_cavities(layer.distribution, layer.alpha, layer.scattering);
+    if (v_cavities)
+        refuse(material, file, "walk follows no light between the V-cavities of blinn",
+               "give scattering = \"single\", or the distribution ggx or beckmann");
+}
+
+/// A surface of a stack, or of its substrate; nothing beneath it yet.
+WalkPartRecord surface_part(double alpha, Distribution distribution, Scattering scattering) {
+    WalkPartRecord part{};
+    part.eta = part.ior = 1.0f;
+    part.alpha = static_cast<float>(alpha);
+    part.distribution = static_cast<std::uint32_t>(kernel_distribution(distribution));
+    part.multiple = scattering == Scattering::Multiple ? 1u : 0u;
+    part.albedo = 1.0f;
+    part.reflectance = part.extinction = part.scattering = NO_INDEX;
+    return part;
+}
+
+/// A slab's optical depths at normal passage, all phases and lanes.
+struct SlabDepths {
+    std::vector<double> absorption, scattering;
+
+    double extinction(std::size_t i) const { return absorption[i] + scattering[i]; }
+};
+
+/// Extinctions in equal ratios from the smallest lane's to the largest's, and the mean albedo.
+void set_references(const SlabDepths& depths, WalkPartRecord& part) {
+    double least = std::numeric_limits<double>::infinity(), most = 0.0, albedo = 0.0;
+    const std::size_t count = depths.absorption.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const double extinction = depths.extinction(i);
+        least = std::min(least, extinction);
+        most = std::max(most, extinction);
+        albedo += extinction > 0.0 ? depths.scattering[i] / extinction : 0.0;
+    }
+    least = std::max(least, least_reference * most);
+    for (int r = 0; r < WALK_REFERENCES; ++r)
+        part.references[r] =
+            static_cast<float>(least * std::pow(most / least, r / (WALK_REFERENCES - 1.0)));
+    part.albedo = static_cast<float>(albedo / static_cast<double>(count));
+}
+
+class WalkTables {
+public:
+    WalkTables(const Material& material, const WavelengthPlan& plan, SceneTables& out)
+        : material_(material), layers_(material.stack.layers), out_(out), lanes_(plan, out.tables) {
+    }
+
+    void append() {
+        record_.walk = static_cast<std::uint32_t>(out_.walk_parts.size());
+        record_.layer_count = static_cast<std::uint32_t>(layers_.size());
+        for (std::size_t k = 0; k < layers_.size(); ++k)
+            append_layer(layers_[k], k > 0 ? layers_[k - 1].ior(reference_nm) : 1.0);
+        append_substrate_part();
+        out_.features.walk = true;
+        out_.features.walk_layers =
+            std::max(out_.features.walk_layers, static_cast<int>(layers_.size()));
+        out_.materials.push_back(record_);
+    }
+
+private:
+    void append_layer(const Layer& layer, double ior_above) {
+        const double ior = layer.ior(reference_nm);
+        WalkPartRecord part = surface_part(layer.alpha, layer.distribution, layer.scattering);
+        part.eta = static_cast<float>(ior / ior_above);
+        part.ior = static_cast<float>(ior);
+        append_slab(layer, part);
+        out_.walk_parts.push_back(part);
+    }
+
+    std::vector<double> depths_of(const Spectrum& coefficient, double thickness) const {
+        std::vector<double> depths;
+        for (int phase = 0; phase < lanes_.phases(); ++phase)
+            for (int lane = 0; lane < lanes_.lanes(); ++lane)
+                depths.push_back(thickness * coefficient(lanes_.plan().wavelength_nm(lane, phase)));
+        return depths;
+    }
+
+    void append_slab(const Layer& layer, WalkPartRecord& part) {
+        const SlabDepths depths{depths_of(layer.absorption, layer.thickness),
+                                depths_of(layer.scattering_coefficient, layer.thickness)};
+        const auto& [absorption, scattering] = depths;
+        const bool absorbs = *std::max_element(absorption.begin(), absorption.end()) > 0.0;
+        const bool scatters = *std::max_element(scattering.begin(), scattering.end()) > 0.0;
+        if (!absorbs && !scatters)
+            return;
+        const auto at = [this](int phase, int lane) {
+            return static_cast<std::size_t>(phase * lanes_.lanes() + lane);
+        };
+        part.least_depth =
+            static_cast<float>(*std::min_element(absorption.begin(), absorption.end()));
+        part.extinction = lanes_.append_lanes(
+            [&](int phase, int lane) { return depths.extinction(at(phase, lane)); });
+        if (!scatters)
+            return;
+        out_.features.scattering_slabs = true;
+        part.scattering = lanes_.append_lanes(
+            [&](int phase, int lane) { return depths.scattering[at(phase, lane)]; });
+        part.anisotropy = static_cast<float>(layer.anisotropy);
+        set_references(depths, part);
+    }
+
+    /// The operator of the bare substrate, M / pi: what the stack sends back to it is walked.
+    void append_substrate_part() {
+        Material bare = material_;
+        bare.stack.layers.clear();
+        const MaterialOptics optics(bare, Model::Adding, lanes_.plan());
+        const LaneOperator middle =
+            append_substrate(bare, Model::Adding, optics, lanes_, record_, out_);
+        if (material_.substrate.type == SubstrateType::Conductor) {
+            append_conductor(material_.substrate.conductor);
+            return;
+        }
+        WalkPartRecord part = surface_part(0.0, Distribution::Ggx, Scattering::Single);
+        part.albedo =
+            static_cast<float>(std::clamp(std::numbers::pi * middle.row_sums().mean(), 0.0, 1.0));
+        out_.walk_parts.push_back(part);
+    }
+
+    /// Reflectance at a facet under the lowest slab, over its cosine.
+    void append_conductor(const Conductor& conductor) {
+        const double ior_above = layers_.empty() ? 1.0 : layers_.back().ior(reference_nm);
+        const auto reflectance = [&](double cosine, int phase, int lane) {
+            const double nm = lanes_.plan().wavelength_nm(lane, phase);
+            return facet_reflectance(conductor_at(conductor, nm), ior_above, cosine);
+        };
+        WalkPartRecord part =
+            surface_part(conductor.alpha, conductor.distribution, conductor.scattering);
+        part.reflectance = lanes_.append_nodes_of_lanes(reflectance);
+        double sum = 0.0;
+        for (int lane = 0; lane < lanes_.lanes(); ++lane)
+            sum += reflectance(1.0, lanes_.phases() / 2, lane);
+        part.albedo = static_cast<float>(sum / lanes_.lanes());
+        out_.features.tabulated_reflectance = true;
+        out_.walk_parts.push_back(part);
+    }
+
+    const Material& material_;
+    const std::vector<Layer>& layers_;
+    SceneTables& out_;
+    LaneTables lanes_;
+    MaterialRecord record_{};
+};
+
+} // namespace
+
+void append_walk_material(const Material& material, const WavelengthPlan& plan,
+                          const std::string& file, SceneTables& tables) {
+    check_material(material, file);
+    WalkTables(material, plan, tables).append();
+}
+
+} // namespace reradiant

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "host/render/scene_tables.h"
+
+namespace reradiant {
+
+/// Appends the tables of a material that is walked through (kernels/walk.h); sets the feature bits
+/// it needs. `file`: the scene's, for errors. Input Error for what the walk of the renderer has
+/// not: an IOR that depends on wavelength, films, flakes, and `multiple` scattering between the
+/// facets of blinn, whose V-cavities no microsurface describes.
+void append_walk_material(const Material& material, const WavelengthPlan& plan,
+                          const std::string& file, SceneTables& tables);
+
+} // namespace reradiant

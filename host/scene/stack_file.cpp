@@ -1,0 +1,28 @@
+#include "host/scene/stack_file.h"
+
+#include "host/scene/load_state.h"
+#include "host/scene/stack_reader.h"
+#include "host/scene/table_reader.h"
+#include "host/scene/textured_value.h"
+
+namespace reradiant {
+
+LayerStack load_stack(const std::filesystem::path& file) {
+    LoadState state;
+    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
+    const toml::table table = parse_toml(file.string(), text);
+    const TableReader root(table, file.string(), "a stack file", {"material", "texture"});
+    const TableReader material =
+        root.table("material", {"name", "model", "layer", "substrate", "normal", "mix"});
+    TextureScope textures(root, state);
+    state.texture_scope = &textures;
+    const auto layers = material.tables("layer");
+    if (layers.empty())
+        material.fail("layer", "the stack has no layer", "give at least one [[material.layer]]");
+    LayerStack stack;
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        stack.layers.push_back(read_layer(*layers[i], root.file(), i, state));
+    return stack;
+}
+
+} // namespace reradiant

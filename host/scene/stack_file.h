@@ -1,0 +1,13 @@
+#pragma once
+
+#include "host/layers/stack.h"
+
+#include <filesystem>
+
+namespace reradiant {
+
+/// The layers of a MATERIAL.toml, whose substrate may be anything or absent: what lay above a
+/// sample that was measured through them. Input Error with the place.
+LayerStack load_stack(const std::filesystem::path& file);
+
+} // namespace reradiant

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "host/study/study.h"
+
+namespace reradiant {
+
+/// Rows and columns that cells are laid out in: the first half of the sweeps runs down, the rest
+/// runs across, the last fastest.
+struct SheetLayout {
+    std::size_t row_sweeps = 0; ///< sweeps that run down
+    std::size_t rows = 1, columns = 1;
+};
+SheetLayout sheet_layout(const Study& study);
+
+/// Pictures of all cells side by side, 4 grey pixels between them; cells that failed stay grey.
+/// Writes nothing when no cell has an image.
+void write_contact_sheet(const std::filesystem::path& file, const Study& study,
+                         const StudyResult& result);
+
+} // namespace reradiant

@@ -1,0 +1,93 @@
+#include "host/study/render_method.h"
+
+#include "host/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+
+namespace reradiant {
+
+namespace {
+
+constexpr int most_comb_wavelengths = 4096;
+constexpr const char* remedy =
+    "a method is a model (auto, adding, weidlich-wilkie, walk), a wavelength sampling (comb or "
+    "comb:N with N from 1 to 4096), or both as MODEL+comb:N";
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    for (std::size_t start = 0; start <= text.size();) {
+        const std::size_t end = std::min(text.find(separator, start), text.size());
+        parts.push_back(text.substr(start, end - start));
+        start = end + 1;
+    }
+    return parts;
+}
+
+[[noreturn]] void refuse(const std::string& method, const std::string& why) {
+    throw_input_error({}, fmt::format("--methods: '{}' {}", method, why), remedy);
+}
+
+bool is_comb(const std::string& part) {
+    return part == "comb" || part.starts_with("comb:");
+}
+
+int comb_count(const std::string& method, const std::string& part) {
+    if (part == "comb")
+        return 0;
+    int count = 0;
+    const char* const end = part.data() + part.size();
+    const auto [stop, code] = std::from_chars(part.data() + 5, end, count);
+    if (code != std::errc{} || stop != end || count < 1 || count > most_comb_wavelengths)
+        refuse(method, "has no valid count of wavelengths");
+    return count;
+}
+
+} // namespace
+
+std::string RenderMethod::file_stem() const {
+    std::string stem = name;
+    std::replace(stem.begin(), stem.end(), ':', '-');
+    return stem;
+}
+
+RenderMethod parse_method(const std::string& text) {
+    RenderMethod method{text};
+    bool has_model = false, has_comb = false;
+    for (const std::string& part : split(text, '+')) {
+        const bool comb = is_comb(part);
+        bool& given = comb ? has_comb : has_model;
+        if (given)
+            refuse(text, comb ? "names two wavelength samplings" : "names two models");
+        given = true;
+        if (comb) {
+            method.comb_count = comb_count(text, part);
+            continue;
+        }
+        try {
+            method.model = model_from_name(part);
+        } catch (const std::invalid_argument&) {
+            refuse(text, fmt::format("holds the unknown part '{}'", part));
+        }
+    }
+    return method;
+}
+
+std::vector<RenderMethod> parse_methods(const std::string& list) {
+    std::vector<RenderMethod> methods;
+    for (const std::string& text : split(list, ',')) {
+        RenderMethod method = parse_method(text);
+        const bool known = std::any_of(methods.begin(), methods.end(), [&](const auto& other) {
+            return other.name == method.name;
+        });
+        if (known)
+            refuse(text, "is named twice");
+        methods.push_back(std::move(method));
+    }
+    return methods;
+}
+
+} // namespace reradiant

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "host/scene/scene.h"
+
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+/// A way to render a scene: what is compared where error is measured against time.
+struct RenderMethod {
+    std::string name; ///< as it was asked for
+    Model model = Model::Auto;
+    int comb_count = 0; ///< wavelengths a path; 0: one a film band
+
+    std::string file_stem() const; ///< the name, fit for a file
+};
+
+/// A model, a wavelength sampling, or both joined by a plus: "adding", "comb:16",
+/// "weidlich-wilkie+comb". Input Error that names the part that is not known.
+RenderMethod parse_method(const std::string& text);
+
+/// Methods separated by commas. Input Error for an empty list and for one that is named twice.
+std::vector<RenderMethod> parse_methods(const std::string& list);
+
+} // namespace reradiant

@@ -1,0 +1,207 @@
+#include "host/study/study.h"
+
+#include "host/scene/sha256.h"
+#include "host/spectral/colour.h"
+#include "host/study/study_store.h"
+#include "host/study/sweep_apply.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <sstream>
+
+namespace reradiant {
+
+namespace {
+
+/// Reading a scene warns about what it finds; once is enough, and loading the study did.
+class QuietLog {
+public:
+    QuietLog() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
+    ~QuietLog() { spdlog::set_level(level_); }
+    QuietLog(const QuietLog&) = delete;
+    QuietLog& operator=(const QuietLog&) = delete;
+
+private:
+    spdlog::level::level_enum level_;
+};
+
+std::string duration_text(double seconds) {
+    if (seconds < 60.0)
+        return fmt::format("{:.0f} s", seconds);
+    return seconds < 3600.0 ? fmt::format("{:.0f} min", seconds / 60.0)
+                            : fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+/// Everything that a cell's results depend on.
+std::string identity_of(const Study& study, const std::vector<ChosenValue>& values,
+                        const Scene& scene, const std::string& device, std::uint32_t seed) {
+    std::ostringstream text;
+    text << scene.hash << ' ' << device << ' ' << seed << ' ' << study.material;
+    for (const ChosenValue& chosen : values)
+        text << ' ' << static_cast<int>(chosen.sweep->kind)
+             << fmt::format(" {}", chosen.sweep->path) << toml::toml_formatter(chosen.value->boxed);
+    if (const auto& r = study.rendering)
+        text << fmt::format(" render {} {} {} {}", r->samples, static_cast<int>(r->method.model),
+                            r->method.comb_count, r->exposure_ev);
+    if (const auto& m = study.measuring)
+        text << fmt::format(" measure {} {} {} {} {}", m->theta_i_deg, m->theta_o_deg, m->phi_deg,
+                            m->illuminants, static_cast<int>(m->model));
+    Sha256 digest;
+    digest.update(text.str());
+    return digest.hex();
+}
+
+/// One run over all cells.
+class Run {
+public:
+    Run(const Study& study, const Device* device, const StudyOptions& options,
+        const StudyProgress& progress)
+        : study_(study), device_(device), options_(options), progress_(progress) {}
+
+    StudyResult result() {
+        const std::size_t count = study_.cell_count();
+        for (std::size_t index = 0; index < count && !result_.interrupted; ++index) {
+            CellResult cell = blank_cell(index);
+            try {
+                do_cell(cell);
+            } catch (const std::exception& error) {
+                cell.error = error.what();
+                spdlog::error("cell {} ({}) failed: {}", index, cell_name(study_, cell),
+                              cell.error);
+            }
+            if (!result_.interrupted)
+                result_.cells.push_back(std::move(cell));
+        }
+        return std::move(result_);
+    }
+
+private:
+    CellResult blank_cell(std::size_t index) const {
+        CellResult cell;
+        cell.index = index;
+        cell.folder = options_.folder / "cells" / fmt::format("{:04}", index);
+        const std::vector<std::size_t> indices = study_.cell_values(index);
+        for (std::size_t k = 0; k < indices.size(); ++k)
+            cell.labels.push_back(study_.sweeps[k].values[indices[k]].label);
+        return cell;
+    }
+
+    std::vector<ChosenValue> chosen_values(std::size_t index) const {
+        std::vector<ChosenValue> chosen;
+        const std::vector<std::size_t> indices = study_.cell_values(index);
+        for (std::size_t k = 0; k < indices.size(); ++k)
+            chosen.push_back({&study_.sweeps[k], &study_.sweeps[k].values[indices[k]]});
+        return chosen;
+    }
+
+    void do_cell(CellResult& cell) {
+        const std::vector<ChosenValue> values = chosen_values(cell.index);
+        const Scene scene = [&] {
+            const QuietLog quiet;
+            return scene_with(study_, values);
+        }();
+        const std::string identity =
+            identity_of(study_, values, scene, device_ != nullptr ? device_->info().name : "",
+                        options_.render.seed);
+        if (restore_cell(cell, identity)) {
+            result_.interrupted = !report(cell, 0.0, "kept");
+            return;
+        }
+        if (study_.rendering)
+            render_cell(scene, cell);
+        if (study_.measuring && !result_.interrupted)
+            measure(scene, values, cell);
+        if (result_.interrupted)
+            return;
+        keep_cell(cell, identity);
+        ++done_now_;
+    }
+
+    void render_cell(const Scene& scene, CellResult& cell) {
+        RenderOptions render = options_.render;
+        render.samples = study_.rendering->samples;
+        render.model = study_.rendering->method.model;
+        render.wavelengths.comb_count = study_.rendering->method.comb_count;
+        RenderResult rendered =
+            reradiant::render(scene, *device_, render, [&](const RenderProgress& state) {
+                const double share = static_cast<double>(state.samples) / render.samples;
+                result_.interrupted = !report(cell, share, fmt::format("{} spp", state.samples));
+                return !result_.interrupted;
+            });
+        if (result_.interrupted)
+            return;
+        rendered.image.attributes["reradiant:cell"] = cell_name(study_, cell);
+        rendered.image.attributes["reradiant:sceneHash"] = scene.hash;
+        rendered.image.attributes["reradiant:seed"] = std::to_string(render.seed);
+        cell.relmse = rendered.relmse;
+        keep_image(cell, rendered.image, study_.rendering->exposure_ev);
+    }
+
+    void measure(const Scene& scene, const std::vector<ChosenValue>& values, CellResult& cell) {
+        result_.interrupted = !report(cell, 0.9, "measuring");
+        if (result_.interrupted)
+            return;
+        StudyMeasuring measuring = *study_.measuring;
+        for (const ChosenValue& chosen : values)
+            if (chosen.sweep->kind == SweepKind::Angle)
+                measuring.theta_i_deg = {*chosen.value->node().value<double>()};
+        const auto material =
+            std::find_if(scene.materials.begin(), scene.materials.end(),
+                         [&](const Material& one) { return one.name == study_.material; });
+        cell.measurement = measure_cell(*material, measuring, illuminants(scene, values));
+    }
+
+    /// The lamp that is swept, or those that the study names.
+    std::vector<NamedIlluminant> illuminants(const Scene& scene,
+                                             const std::vector<ChosenValue>& values) const {
+        for (const ChosenValue& chosen : values)
+            if (chosen.sweep->kind == SweepKind::Illuminant) {
+                const auto light = static_cast<std::size_t>(std::max(chosen.sweep->index, 0));
+                return {{chosen.value->label, light_spectrum(scene.lights[light])}};
+            }
+        std::vector<NamedIlluminant> named;
+        for (const std::string& name : study_.measuring->illuminants)
+            named.push_back({name, illuminant_with_luminance(name, 1.0)});
+        return named;
+    }
+
+    bool report(const CellResult& cell, double share, const std::string& note) const {
+        const auto count = static_cast<double>(study_.cell_count());
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const double done = static_cast<double>(done_now_) + share;
+        const double left = count - static_cast<double>(cell.index) - share;
+        const std::string time =
+            done > 0.0 ? fmt::format(", {} left", duration_text(seconds / done * left)) : "";
+        return progress_((static_cast<double>(cell.index) + share) / count,
+                         fmt::format("cell {} of {:.0f}: {}{}", cell.index + 1, count, note, time));
+    }
+
+    const Study& study_;
+    const Device* device_;
+    const StudyOptions& options_;
+    const StudyProgress& progress_;
+    StudyResult result_;
+    std::size_t done_now_ = 0;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+} // namespace
+
+std::string cell_name(const Study& study, const CellResult& cell) {
+    std::vector<std::string> parts;
+    for (std::size_t k = 0; k < study.sweeps.size(); ++k)
+        parts.push_back(fmt::format("{} = {}", study.sweeps[k].label, cell.labels[k]));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+StudyResult run_study(const Study& study, const Device* device, const StudyOptions& options,
+                      const StudyProgress& progress) {
+    return Run(study, device, options, progress).result();
+}
+
+} // namespace reradiant

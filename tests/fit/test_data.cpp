@@ -1,0 +1,137 @@
+#include "host/error.h"
+#include "host/fit/bispectral_data.h"
+#include "host/fit/prepared_target.h"
+#include "tests/film/film_fixtures.h"
+#include "tests/fit/fit_cases.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+using namespace reradiant;
+
+namespace {
+
+const std::string header = "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
+                           "# kind: measured\n";
+const std::string measure_headings =
+    "theta_i_deg,theta_o_deg,phi_deg,lambda_i_nm,lambda_o_nm,value,stderr,part\n";
+
+class DataTest : public ::testing::Test {
+protected:
+    BispectralData read(const std::string& text) const {
+        put_bytes(folder / "data.csv", text);
+        return read_bispectral_data(folder / "data.csv");
+    }
+    /// The text must be refused at line:column with these words.
+    void expect_refused(const std::string& text, const std::string& place,
+                        const std::string& words) const {
+        try {
+            read(text);
+            ADD_FAILURE() << "not refused: " << text;
+        } catch (const Error& error) {
+            const std::string message = error.what();
+            EXPECT_EQ(error.exit_code(), 2);
+            EXPECT_NE(message.find("data.csv:" + place), std::string::npos) << message;
+            EXPECT_NE(message.find(words), std::string::npos) << message;
+        }
+    }
+    const TemporaryFolder folder;
+};
+
+} // namespace
+
+TEST_F(DataTest, GapsBecomeNan) {
+    const BispectralData data = read(header + "nm,400,410\n400,0.5,nan\n410,0.1,0.5\n");
+    ASSERT_EQ(data.blocks.size(), 1u);
+    EXPECT_FALSE(data.blocks[0].geometry);
+    EXPECT_TRUE(std::isnan(data.blocks[0].value(0, 1)));
+    EXPECT_EQ(data.blocks[0].value(1, 0), 0.1);
+    EXPECT_EQ(data.measured_count(), 3);
+}
+
+TEST_F(DataTest, MeasurementsBecomeBlocksOfRadianceFactors) {
+    const BispectralData data = read("# kind: measured\n" + measure_headings +
+                                     "45,0,0,400,400,0.1,0.01,diffuse\n"
+                                     "45,0,0,400,410,0.02,0,diffuse\n"
+                                     "45,0,0,400,410,9,0,specular\n"
+                                     "45,60,180,400,400,0.2,0,diffuse\n");
+    ASSERT_EQ(data.blocks.size(), 2u);
+    EXPECT_EQ(data.blocks[1].geometry->theta_o_deg, 60.0);
+    EXPECT_NEAR(data.blocks[0].value(0, 0), 0.1 * 3.14159265358979, 1e-12);
+    EXPECT_NEAR(data.blocks[0].sigma(0, 0), 0.01 * 3.14159265358979, 1e-12);
+    EXPECT_TRUE(std::isnan(data.blocks[0].sigma(1, 0))); // 0 stands for unknown
+    EXPECT_TRUE(std::isnan(data.blocks[1].value(1, 0)));
+}
+
+TEST_F(DataTest, BlocksSurviveWritingAndReading) {
+    BispectralData data = noisy_data(true_matrix(two_fluorophores()), 0.01, true, 1);
+    data.blocks[0].geometry = {45.0, 10.0, 180.0};
+    data.blocks[0].value(3, 2) = not_measured;
+    write_bispectral_data(folder / "out.csv", data);
+    const BispectralData back = read_bispectral_data(folder / "out.csv");
+    ASSERT_EQ(back.blocks.size(), 1u);
+    EXPECT_EQ(back.emission, data.emission);
+    EXPECT_TRUE(std::isnan(back.blocks[0].value(3, 2)));
+    // 12 digits are written.
+    EXPECT_NEAR(back.blocks[0].value(20, 20), data.blocks[0].value(20, 20), 1e-10);
+    EXPECT_NEAR(back.blocks[0].sigma(20, 20), 0.01, 1e-12);
+}
+
+TEST_F(DataTest, BadInputIsRefusedAtItsPlace) {
+    expect_refused("# reradiation\n# orientation: rows-emission\nnm,400\n400,0.1\n", "",
+                   "quantity");
+    expect_refused("# reradiation\n# quantity: per-band\nnm,400\n400,0.1\n", "", "orientation");
+    expect_refused(header + "# quantity: density-per-nm\nnm,400\n400,0.1\n", "5:", "quantity");
+    expect_refused(header + "nm,400,410\n400,0.1\n", "6:", "");
+    expect_refused(header + "nm,400,400\n400,0.1,0.1\n", "5:8", "400");
+    expect_refused(header + "nm,400,410\n400,50,0\n410,3,60\n", "6:5", "percent");
+    expect_refused(header + "nm,0.4,0.41\n0.4,0.1,0\n0.41,0,0.1\n", "1:1", "nm");
+    expect_refused(header + "nm,400\n400,nan\n", "1:1", "no entry was measured");
+    expect_refused("# quantity: density-per-nm\n" + measure_headings, "1:12", "contradicts");
+    expect_refused(measure_headings +
+                       "45,0,0,400,400,0.1,0,diffuse\n45,0,0,400,400,0.1,0,diffuse\n",
+                   "3:8", "twice");
+    expect_refused(measure_headings + "45,,,400,400,0.1,0,diffuse\n", "2:4", "directions");
+    expect_refused(measure_headings + "45,0,0,400,400,0.1,0\n", "2:", "values in this line");
+    expect_refused(measure_headings + "95,0,0,400,400,0.1,0,diffuse\n", "2:1", "degrees");
+}
+
+TEST(Target, NoiseIsSeenThroughTheSignal) {
+    const ReradiationMatrix truth = true_matrix(two_fluorophores());
+    for (const double noise : {1e-4, 1e-3, 1e-2}) {
+        const BispectralData data = noisy_data(truth, noise * stokes_peak(truth), false, 3);
+        const PreparedTarget prepared = prepare_target(data, {false, 10.0});
+        EXPECT_TRUE(prepared.noise_is_estimated);
+        // About 900 correlated differences know the scale to 10 %; curvature of the signal adds.
+        EXPECT_NEAR(prepared.noise / (noise * stokes_peak(truth)), 1.0, 0.3) << noise;
+    }
+}
+
+TEST(Target, SpillAndDiagonalAreNotUsed) {
+    const PreparedTarget prepared =
+        prepare_target(noisy_data(true_matrix(two_fluorophores()), 1e-3, true, 3), {false, 10.0});
+    const FitTarget& target = prepared.target;
+    for (int i = 0; i < target.excitation.count; ++i)
+        for (int o = 0; o < target.emission.count; ++o)
+            EXPECT_EQ(target.weight(o, i) > 0.0,
+                      target.emission.centre_nm(o) > target.excitation.centre_nm(i) + 10.5);
+    EXPECT_TRUE(std::isnan(prepared.diagonal(0))); // 300 nm is no emission band
+    EXPECT_NEAR(prepared.diagonal(20), 0.1, 0.01);
+}
+
+TEST(Target, SaturatedPlateauIsLeftOutAndNamed) {
+    BispectralData data = noisy_data(true_matrix(two_fluorophores()), 1e-3, true, 3);
+    const double limit = 0.5 * stokes_peak(true_matrix(two_fluorophores()));
+    int cut = 0;
+    for (double& value : data.blocks[0].value.reshaped())
+        if (value > limit) {
+            value = limit;
+            ++cut;
+        }
+    ASSERT_GT(cut, 4);
+    const PreparedTarget prepared = prepare_target(data, {false, 10.0});
+    EXPECT_LT(prepared.target.value.maxCoeff() * prepared.target.scale, limit);
+    ASSERT_FALSE(prepared.notes.empty());
+    EXPECT_NE(prepared.notes[0].find("saturated"), std::string::npos);
+}

@@ -1,0 +1,69 @@
+#include "tests/fit/fit_cases.h"
+
+#include <gtest/gtest.h>
+
+#include <ctime>
+#include <filesystem>
+
+using namespace reradiant;
+
+// Bars on measurements that lie beside the source tree, where they are.
+
+namespace {
+
+struct Bar {
+    const char* name;
+    double rank_1, rank_3; ///< relative RMSE of a plain masked non-negative factorisation
+};
+constexpr Bar bars[] = {{"HERPIORA", 0.056, 0.033}, {"CIBA12", 0.068, 0.037},
+                        {"HERPICER", 0.078, 0.041}, {"IXCRLALE", 0.083, 0.043},
+                        {"POLGREE", 0.090, 0.053},  {"CIPLAW10", 0.121, 0.058},
+                        {"PHP8HP1C", 0.209, 0.135}};
+
+class MeasuredFit : public ::testing::TestWithParam<Bar> {
+protected:
+    void SetUp() override {
+        if (!std::filesystem::exists(folder_ / "HERPIORA.BFC"))
+            GTEST_SKIP() << "measured data are not in " << folder_
+                         << ": fits are NOT checked against measurements";
+        data_ = read_bispectral_data(folder_ / (std::string(GetParam().name) + ".BFC"));
+    }
+    FitResult fit(FitModel model, std::optional<int> rank, double smooth_nm) const {
+        FitSettings settings;
+        settings.model = model;
+        settings.rank = rank;
+        settings.smooth_nm = smooth_nm;
+        const std::clock_t begin = std::clock();
+        FitResult result = fit_reradiation(data_, settings);
+        result.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+        EXPECT_EQ(result.failure, "");
+        EXPECT_EQ(result.anti_stokes_energy, 0.0);
+        EXPECT_LE(result.trace.kkt, 1e-8);
+        return result;
+    }
+    BispectralData data_;
+    const std::filesystem::path folder_ =
+        std::filesystem::path(RERADIANT_SOURCE_DIR) / ".." / "shared" / "data" / "bfc";
+};
+
+/// The bars are given to three digits.
+constexpr double rounding = 0.0005;
+
+} // namespace
+
+TEST_P(MeasuredFit, FactorsMeetTheBars) {
+    const FitResult one = fit(FitModel::Factors, 1, 0.0), three = fit(FitModel::Factors, 3, 0.0);
+    EXPECT_LE(one.bytes, 360u);
+    EXPECT_LE(one.relative_rmse, GetParam().rank_1 + rounding);
+    EXPECT_LE(three.bytes, 1080u);
+    EXPECT_LE(three.relative_rmse, GetParam().rank_3 + rounding);
+    // Processor seconds, so that a busy machine does not count.
+    EXPECT_LE(one.seconds, 2.0);
+    EXPECT_LE(three.seconds, 2.0);
+    const FitResult smooth = fit(FitModel::Factors, 1, 20.0);
+    EXPECT_LE(smooth.bytes, 200u);
+    EXPECT_LE(smooth.relative_rmse, 1.1 * one.relative_rmse);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bfc450, MeasuredFit, ::testing::ValuesIn(bars),
+                         [](const auto& info) { return std::string(info.param.name); });

@@ -1,0 +1,301 @@
+// Every kind of material: what the renderer shows of it is what `measure` says of it.
+#include "host/measure/measure.h"
+#include "host/measure/surface_model.h"
+#include "tests/render/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace reradiant {
+namespace {
+
+using namespace test;
+
+double radians(double degrees) {
+    return degrees * std::numbers::pi / 180.0;
+}
+
+const WavelengthGrid bands = grid_from_range(450, 650, 50);
+
+/// View, incidence and azimuth between them, degrees: across, and near the mirror's direction.
+struct Geometry {
+    double view, incidence, phi;
+};
+constexpr Geometry geometries[] = {{40, 30, 90}, {50, 35, 170}};
+
+std::unique_ptr<SurfaceModel> surface_model(const Material& m, Model model,
+                                            const WavelengthGrid& grid) {
+    const MeasuredSubstrate substrate = measured_substrate(m.substrate, grid);
+    return model == Model::WeidlichWilkie ? weidlich_wilkie_surface(m.stack, substrate, grid)
+                                          : adding_surface(m.stack, substrate, grid);
+}
+
+RenderResult render_plane(const Material& m, Model model, const WavelengthGrid& grid,
+                          const Geometry& at) {
+    Scene scene = plane_scene(m, at.view, 8, 8);
+    scene.lights = {directional(at.incidence, at.phi, Spectrum::constant(1.0))};
+    scene.integrator.max_depth = 1;
+    RenderOptions options;
+    options.bands = grid;
+    options.samples = 2;
+    options.model = model;
+    options.wavelengths.centred = true;
+    options.all_features = true; // one program for all: what is left out is tested below
+    return render(scene, device(), options);
+}
+
+/// A directional light leaves nothing to chance: the radiance is f cos. `tolerance` (relative):
+/// single precision along the path and in tables, 0.005 degrees of view over the film, which a lobe
+/// of alpha 0.2 turns into 1e-4 on its flank.
+void expect_as_measured(const char* what, const Material& m, Model model,
+                        const WavelengthGrid& grid = bands, double tolerance = 3e-4) {
+    const std::unique_ptr<SurfaceModel> surface = surface_model(m, model, grid);
+    for (const Geometry& at : geometries) {
+        const auto direction = [](double theta, double phi) {
+            const double s = std::sin(radians(theta));
+            return kernels::vec3(s * std::cos(radians(phi)), s * std::sin(radians(phi)),
+                                 std::cos(radians(theta)));
+        };
+        const kernels::Vec3 wi = direction(at.incidence, at.phi), wo = direction(at.view, 0.0);
+        const RenderResult result = render_plane(m, model, grid, at);
+        EXPECT_EQ(result.non_finite, 0u) << what;
+        const Eigen::MatrixXd diffuse = surface->diffuse(wi, wo);
+        for (int band = 0; band < grid.count; ++band) {
+            const double f = diffuse.row(band).sum() + surface->specular(band, wi, wo);
+            const double expected = f * std::cos(radians(at.incidence));
+            EXPECT_NEAR(band_statistics(result.image, band).mean, expected, tolerance * expected)
+                << what << ", " << model_name(model) << ", band " << band << ", phi " << at.phi;
+        }
+    }
+}
+
+Spectrum ramp(double from, double to) {
+    return Spectrum::table({400, 700}, {from, to});
+}
+
+Material oren_nayar(std::vector<Layer> layers, double sigma, double reflectance = 0.7) {
+    Material m = material(std::move(layers), reflectance);
+    m.substrate.type = SubstrateType::OrenNayar;
+    m.substrate.sigma = sigma;
+    return m;
+}
+
+/// Something like gold.
+Conductor metal(double alpha, Distribution distribution = Distribution::Ggx) {
+    Conductor conductor;
+    conductor.ior = ramp(1.6, 0.15);
+    conductor.kappa = ramp(1.9, 3.5);
+    conductor.alpha = alpha;
+    conductor.distribution = distribution;
+    return conductor;
+}
+
+Material on_metal(std::vector<Layer> layers, const Conductor& conductor) {
+    Material m = material(std::move(layers), 0.0);
+    m.substrate.type = SubstrateType::Conductor;
+    m.substrate.conductor = conductor;
+    return m;
+}
+
+/// A lacquer that absorbs.
+Layer lacquer(double alpha) {
+    Layer top = layer(1.5, alpha);
+    top.absorption = ramp(0.8, 0.05);
+    return top;
+}
+
+Layer scattering(double ior, double alpha, double anisotropy) {
+    Layer slab = layer(ior, alpha, 0.1);
+    slab.scattering_coefficient = ramp(0.4, 1.5);
+    slab.anisotropy = anisotropy;
+    return slab;
+}
+
+Layer with_flakes(Layer slab, double coverage, const Conductor& reflector) {
+    slab.flakes = Flakes{coverage, reflector};
+    return slab;
+}
+
+TEST(Materials, OrenNayarUnderAddingIsAsMeasured) {
+    for (const double sigma : {0.2, 0.6})
+        expect_as_measured("bare", oren_nayar({}, sigma), Model::Adding);
+    expect_as_measured("smooth", oren_nayar({layer(1.5)}, 0.5), Model::Adding);
+    expect_as_measured("lacquer", oren_nayar({lacquer(0.0), layer(1.3)}, 0.5), Model::Adding);
+    expect_as_measured("rough", oren_nayar({layer(1.5, 0.3)}, 0.5), Model::Adding);
+}
+
+TEST(Materials, FluorescentOrenNayarUnderAddingIsAsMeasured) {
+    const ReradiationMatrix matrix = shifted_matrix();
+    for (const auto& layers : {std::vector<Layer>{}, {lacquer(0.0)}}) {
+        Material m = fluorescent(layers, matrix);
+        m.substrate.type = SubstrateType::OrenNayar;
+        m.substrate.sigma = 0.5;
+        expect_as_measured("fluorescent", m, Model::Adding, matrix.emission);
+    }
+}
+
+TEST(Materials, OrenNayarUnderWeidlichWilkieIsAsMeasured) {
+    expect_as_measured("bare", oren_nayar({}, 0.5), Model::WeidlichWilkie);
+    expect_as_measured("smooth", oren_nayar({lacquer(0.0)}, 0.5), Model::WeidlichWilkie);
+    expect_as_measured("rough", oren_nayar({lacquer(0.3)}, 0.5), Model::WeidlichWilkie);
+}
+
+TEST(Materials, ConductorsAreAsMeasured) {
+    for (const Distribution distribution :
+         {Distribution::Ggx, Distribution::Beckmann, Distribution::Blinn})
+        expect_as_measured("bare", on_metal({}, metal(0.25, distribution)), Model::WeidlichWilkie);
+    expect_as_measured("under lacquer", on_metal({lacquer(0.0)}, metal(0.25)),
+                       Model::WeidlichWilkie);
+    expect_as_measured("under rough lacquer", on_metal({lacquer(0.2)}, metal(0.25)),
+                       Model::WeidlichWilkie);
+    Conductor single = metal(0.25);
+    single.scattering = Scattering::Single;
+    expect_as_measured("single", on_metal({}, single), Model::WeidlichWilkie);
+}
+
+TEST(Materials, FilmsAreAsMeasured) {
+    // Tables of a reflectance over its facets are cubic: 4e-5 of it for films of a few hundred nm.
+    Conductor coated = metal(0.25);
+    coated.film = ThinFilm{180.0, Spectrum::constant(2.2)};
+    expect_as_measured("on a metal", on_metal({}, coated), Model::WeidlichWilkie);
+    for (const double alpha : {0.0, 0.25}) {
+        Layer top = lacquer(alpha);
+        top.film = ThinFilm{250.0, Spectrum::constant(1.8)};
+        expect_as_measured("on a layer", material({top}, 0.5), Model::WeidlichWilkie);
+        expect_as_measured("on a layer over a metal", on_metal({top}, metal(0.25)),
+                           Model::WeidlichWilkie);
+    }
+}
+
+TEST(Materials, FlakesAreAsMeasured) {
+    Conductor pearl = metal(0.2);
+    pearl.film = ThinFilm{120.0, Spectrum::constant(2.4)};
+    const Layer paint = with_flakes(lacquer(0.0), 0.3, pearl);
+    expect_as_measured("one sheet", material({paint}, 0.2), Model::WeidlichWilkie);
+    expect_as_measured("two sheets under a rough top",
+                       material({with_flakes(lacquer(0.25), 0.3, metal(0.2)), paint}, 0.2),
+                       Model::WeidlichWilkie);
+    expect_as_measured("smooth flakes",
+                       on_metal({with_flakes(lacquer(0.25), 0.5, metal(0.0))}, metal(0.3)),
+                       Model::WeidlichWilkie);
+}
+
+TEST(Materials, ScatteringSlabsAreAsMeasured) {
+    for (const Model model : {Model::Adding, Model::WeidlichWilkie}) {
+        expect_as_measured("smooth", material({scattering(1.5, 0.0, 0.5)}, 0.4), model);
+        expect_as_measured("two", material({lacquer(0.0), scattering(1.3, 0.3, -0.3)}, 0.4), model);
+    }
+    expect_as_measured("over a metal", on_metal({scattering(1.5, 0.0, 0.7)}, metal(0.25)),
+                       Model::WeidlichWilkie);
+}
+
+TEST(Materials, DispersiveWeidlichWilkieIsAsMeasured) {
+    Layer top = with_flakes(scattering(1.5, 0.2, 0.4), 0.3, metal(0.25));
+    top.ior = ramp(1.7, 1.4);
+    expect_as_measured("everything", on_metal({top, layer(1.8, 0.3)}, metal(0.3)),
+                       Model::WeidlichWilkie);
+}
+
+TEST(Materials, SmoothMetalsMirrorTheirSurroundings) {
+    Conductor coated = metal(0.0);
+    coated.film = ThinFilm{150.0, Spectrum::constant(1.6)};
+    for (const Material& m : {on_metal({}, metal(0.0)), on_metal({lacquer(0.0)}, coated)}) {
+        Scene scene = plane_scene(m, 50.0, 8, 8);
+        scene.lights = {environment(Spectrum::constant(1.0))};
+        RenderOptions options;
+        options.bands = bands;
+        options.samples = 64;
+        options.wavelengths.centred = true;
+        options.all_features = true;
+        const RenderResult result = render(scene, device(), options);
+        const auto surface = surface_model(m, Model::WeidlichWilkie, bands);
+        for (int band = 0; band < bands.count; ++band) {
+            const double c = std::cos(radians(50.0));
+            const double expected =
+                surface->specular_delta(band, c) + surface->substrate_delta(band, c);
+            const BandStatistics found = band_statistics(result.image, band);
+            EXPECT_NEAR(found.mean, expected,
+                        sidak_sigmas(2 * bands.count) * found.standard_error + 1e-4 * expected)
+                << band;
+        }
+    }
+}
+
+/// Radiance in a furnace of radiance 1 is the directional-hemispherical reflectance, as adding is
+/// reciprocal. It takes in how directions are sampled and weighted.
+void expect_furnace_as_measured(const char* what, const Material& m, double view) {
+    Scene scene = plane_scene(m, view, 12, 12);
+    scene.lights = {environment(Spectrum::constant(1.0))};
+    RenderOptions options;
+    options.bands = bands;
+    options.samples = 256;
+    options.wavelengths.centred = true;
+    options.all_features = true;
+    const RenderResult result = render(scene, device(), options);
+    const auto surface = surface_model(m, Model::Adding, bands);
+    const double c = std::cos(radians(view));
+    const Eigen::MatrixXd diffuse = surface->hemispherical_diffuse(c);
+    for (int band = 0; band < bands.count; ++band) {
+        const double expected = diffuse.row(band).sum() + surface->hemispherical_specular(band, c);
+        const BandStatistics found = band_statistics(result.image, band);
+        // 1e-3: the angular tables of rough stacks, as in the white furnace
+        EXPECT_NEAR(found.mean, expected,
+                    sidak_sigmas(6 * bands.count) * found.standard_error + 1e-3 * expected)
+            << what << ", view " << view << ", band " << band;
+    }
+}
+
+TEST(Materials, FurnacesOfOrenNayarAndScatteringSlabsAreAsMeasured) {
+    for (const double view : {20.0, 70.0}) {
+        expect_furnace_as_measured("oren-nayar", oren_nayar({}, 0.5), view);
+        expect_furnace_as_measured("oren-nayar, rough", oren_nayar({layer(1.5, 0.3)}, 0.5), view);
+        expect_furnace_as_measured("slab", material({scattering(1.5, 0.0, 0.5)}, 0.4), view);
+    }
+}
+
+/// A sphere of `m`, a checker in the mixture, under a sky of two colours and a lamp.
+Scene specialised_scene(const Material& m) {
+    Scene scene = sphere_scene(m, 12, 12);
+    scene.materials.push_back(material({}, 0.3));
+    scene.surfaces = plain_surfaces(scene);
+    Texture checker;
+    checker.type = TextureType::Checker;
+    checker.size = 0.5;
+    scene.textures = {checker};
+    scene.surfaces[0].mixed_with = 1;
+    scene.surfaces[0].mix_texture = 0;
+    Image sky;
+    sky.width = 2;
+    sky.height = 2;
+    sky.rgb = {0.5f, 0.2f, 0.1f, 0.1f, 0.3f, 0.9f, 0.2f, 0.2f, 0.2f, 0.1f, 0.1f, 0.1f};
+    scene.images = {sky};
+    scene.lights = {EnvironmentLight{Spectrum::constant(1.0), 0, 30.0},
+                    RectangleLight{{0, 4, 1}, {2, 0, 0}, {0, 0, 2}, Spectrum::constant(5.0)}};
+    return scene;
+}
+
+TEST(Materials, AllFeaturesAgreeWithTheSpecialisedKernels) {
+    const Layer paint = with_flakes(scattering(1.5, 0.2, 0.5), 0.3, metal(0.2));
+    for (const Material& m : {oren_nayar({layer(1.5)}, 0.5), on_metal({paint}, metal(0.3))}) {
+        const Scene scene = specialised_scene(m);
+        RenderOptions options;
+        options.bands = bands;
+        options.samples = 8;
+        options.wavelengths.centred = true;
+        const RenderResult some = render(scene, device(), options);
+        options.all_features = true;
+        const RenderResult all = render(scene, device(), options);
+        EXPECT_EQ(some.non_finite, 0u);
+        EXPECT_FALSE(some.left_out.empty());
+        ASSERT_EQ(all.image.values.size(), some.image.values.size());
+        for (std::size_t i = 0; i < all.image.values.size(); ++i) {
+            const float expected = some.image.values[i];
+            EXPECT_NEAR(all.image.values[i], expected, 1e-4f * (expected + 0.1f)) << i;
+        }
+    }
+}
+
+} // namespace
+} // namespace reradiant

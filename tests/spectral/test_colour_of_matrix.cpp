@@ -1,0 +1,196 @@
+#include "host/spectral/colour_of_matrix.h"
+#include "host/spectral/matrix_io.h"
+#include "tests/spectral/synthetic_recipes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+using namespace reradiant;
+
+namespace {
+
+constexpr const char* lamps[] = {"A", "D65", "FL2", "LED-B3"};
+
+ReradiationMatrix shipped(const std::string& name) {
+    return read_reradiation(std::filesystem::path(RERADIANT_SOURCE_DIR) / "spectra" /
+                            "reradiation" / name);
+}
+
+MatrixColour colour_under(const ReradiationMatrix& matrix, const std::string& name,
+                          ColourSum sum = ColourSum::Bands) {
+    return colour_of_matrix(matrix, illuminant(name), sum);
+}
+
+/// A paint that only reflects, from 360 to 780 nm in 10 nm steps.
+ReradiationMatrix reflecting(const std::function<double(double)>& reflectance) {
+    ReradiationMatrix matrix;
+    matrix.emission = matrix.excitation = {360.0, 10.0, 43};
+    matrix.values.setZero(43, 43);
+    for (int band = 0; band < 43; ++band)
+        matrix.values(band, band) = reflectance(matrix.emission.centre_nm(band));
+    return matrix;
+}
+
+void expect_near(const std::array<double, 3>& seen, const std::array<double, 3>& expected,
+                 double tolerance, const std::string& what) {
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(seen[c], expected[c], tolerance) << what << ", component " << c;
+}
+
+} // namespace
+
+// Numbers of colour-science 0.4.7 (its tables of illuminants and of the observer, its Lab, CIE 2004
+// whiteness, CIEDE2000), the matrix product by numpy; printed with six decimals. Its tables and
+// ours hold the same digits, so only the order of sums differs.
+TEST(ColourOfMatrix, AgreesWithColourScience) {
+    const std::array<Xyz, 4> xyz = {Xyz{101.631143, 58.807389, 1.482706},
+                                    {126.797302, 77.543911, 4.445695},
+                                    {88.879941, 56.237341, 2.299985},
+                                    {95.316112, 58.089574, 2.770893}};
+    const std::array<std::array<double, 3>, 4> lab = {{{81.185608, 68.32947, 98.200876},
+                                                       {90.571372, 91.112457, 114.862593},
+                                                       {79.748706, 69.940929, 95.999777},
+                                                       {80.788566, 73.471762, 97.923203}}};
+    const std::array<double, 4> to_green = {70.8521623698, 83.9540323002, 70.0996969074,
+                                            73.4142650267};
+    const ReradiationMatrix orange = shipped("synthetic-orange.csv");
+    const ReradiationMatrix green = shipped("synthetic-green.csv");
+    for (std::size_t k = 0; k < 4; ++k) {
+        const MatrixColour colour = colour_under(orange, lamps[k]);
+        expect_near(colour.xyz, xyz[k], 1e-6, lamps[k]);
+        expect_near(colour.lab, lab[k], 2e-6, lamps[k]);
+        EXPECT_NEAR(ciede2000(colour.lab, colour_under(green, lamps[k]).lab), to_green[k], 1e-6);
+    }
+    EXPECT_NEAR(colour_under(orange, "D65").xy[0], 0.6073049, 1e-7);
+    EXPECT_NEAR(colour_under(orange, "D65").xy[1], 0.3714022, 1e-7);
+}
+
+TEST(ColourOfMatrix, WhitenessAgreesWithColourScience) {
+    const MatrixColour orange = colour_under(shipped("synthetic-orange.csv"), "D65");
+    const Whiteness far = cie_whiteness(orange.xyz, orange.white);
+    EXPECT_NEAR(far.whiteness, -230.00753, 1e-5);
+    EXPECT_NEAR(far.tint, -267.09322, 1e-5);
+    EXPECT_FALSE(far.within_limits);
+    // By its definition the perfect diffuser has whiteness 100 and no tint.
+    const Whiteness white = cie_whiteness(orange.white, orange.white);
+    EXPECT_DOUBLE_EQ(white.whiteness, 100.0);
+    EXPECT_DOUBLE_EQ(white.tint, 0.0);
+    EXPECT_TRUE(white.within_limits);
+}
+
+// Against the weights that colour-science 0.4.7 makes by ASTM E2022 for the same 10 nm bands, from
+// illuminants interpolated linearly to 1 nm as CIE 15 asks. The illuminants of FL and LED end at
+// 780 nm, A and D65 are cut there: the ranges are the same.
+TEST(ColourOfMatrix, E308AgreesWithColourScienceForReflection) {
+    const std::array<Xyz, 4> expected = {Xyz{62.207183, 34.720408, 1.453849},
+                                         {40.74055, 24.734362, 4.379319},
+                                         {42.399267, 27.812214, 2.724414},
+                                         {48.048764, 29.187569, 2.734783}};
+    const std::array<Xyz, 4> white = {Xyz{109.848631, 100, 35.590955},
+                                      {95.046857, 100, 108.882973},
+                                      {99.14607, 100, 67.314818},
+                                      {100.861889, 100, 67.63394}};
+    const Spectrum diagonal = shipped("synthetic-orange.csv").reflectance();
+    const ReradiationMatrix paint = reflecting([&](double nm) { return diagonal(nm); });
+    for (std::size_t k = 0; k < 4; ++k) {
+        const MatrixColour colour = colour_under(paint, lamps[k], ColourSum::E308);
+        expect_near(colour.xyz, expected[k], 2e-6, lamps[k]);
+        expect_near(colour.white, white[k], 2e-6, lamps[k]);
+    }
+}
+
+TEST(ColourOfMatrix, E308ReproducesCubicsBetweenTheBands) {
+    // Lagrange's cubic is exact for polynomials of degree 3 inside and 2 at the ends, so bands of
+    // 10 nm and of 5 nm give one colour for a parabola.
+    const auto parabola = [](double nm) { return 0.3 + 1e-5 * (nm - 500.0) * (nm - 520.0); };
+    const ReradiationMatrix coarse = reflecting(parabola);
+    ReradiationMatrix fine;
+    fine.emission = fine.excitation = {360.0, 5.0, 85};
+    fine.values.setZero(85, 85);
+    for (int band = 0; band < 85; ++band)
+        fine.values(band, band) = parabola(fine.emission.centre_nm(band));
+    for (const char* lamp : lamps)
+        expect_near(colour_under(fine, lamp, ColourSum::E308).xyz,
+                    colour_under(coarse, lamp, ColourSum::E308).xyz, 1e-9, lamp);
+}
+
+TEST(ColourOfMatrix, E308CountsAMercuryLineThatNoBandCentreHits) {
+    // Both sums agree for a smooth illuminant, to what 10 nm bands resolve of this fluorophore
+    // (0.02 of 77); FL2's lines at 405 and 436 nm lie between band centres.
+    const ReradiationMatrix orange = shipped("synthetic-orange.csv");
+    const double smooth = std::abs(colour_under(orange, "D65").xyz[1] -
+                                   colour_under(orange, "D65", ColourSum::E308).xyz[1]);
+    const double lines = std::abs(colour_under(orange, "FL2").xyz[1] -
+                                  colour_under(orange, "FL2", ColourSum::E308).xyz[1]);
+    EXPECT_LT(smooth, 0.1);
+    EXPECT_GT(lines, 10.0 * smooth);
+}
+
+TEST(ColourOfMatrix, RadianceFactorsAddUp) {
+    const MatrixColour colour = colour_under(shipped("synthetic-orange.csv"), "D65");
+    ASSERT_EQ(colour.nm.size(), 49u);
+    double largest = 0.0;
+    for (std::size_t o = 0; o < colour.nm.size(); ++o) {
+        EXPECT_DOUBLE_EQ(colour.total[o], colour.reflected[o] + colour.luminescent[o]);
+        largest = std::max(largest, colour.total[o]);
+    }
+    EXPECT_NEAR(largest, 2.63815340172, 1e-10); // numpy, as above
+    EXPECT_GT(colour.luminance_reflected, 0.0);
+    EXPECT_LT(colour.luminance_reflected, colour.xyz[1]);
+}
+
+TEST(ColourOfMatrix, WhiteStaysWhite) {
+    const ReradiationMatrix white = reflecting([](double) { return 1.0; });
+    for (const char* lamp : lamps)
+        for (const ColourSum sum : {ColourSum::Bands, ColourSum::E308}) {
+            const MatrixColour colour = colour_under(white, lamp, sum);
+            expect_near(colour.xyz, colour.white, 1e-12, lamp);
+            expect_near(colour.lab, {100.0, 0.0, 0.0}, 1e-10, lamp);
+            EXPECT_NEAR(colour.luminance_reflected, 100.0, 1e-12);
+        }
+}
+
+TEST(ColourOfMatrix, DarkBandsHaveNoRadianceFactor) {
+    // FL2's table begins at 380 nm.
+    const MatrixColour colour = colour_under(shipped("synthetic-orange.csv"), "FL2");
+    EXPECT_TRUE(std::isnan(colour.total[0]));
+    EXPECT_FALSE(std::isnan(colour.total[8]));
+    EXPECT_FALSE(std::isnan(colour.reflected[0]));
+}
+
+TEST(ColourOfMatrix, RawValuesCountAsTheyAre) {
+    ReradiationMatrix matrix = reflecting([](double) { return 0.5; });
+    matrix.kind = MatrixKind::Measured;
+    const double before = colour_under(matrix, "E").xyz[1];
+    matrix.values(19, 25) = -0.25; // anti-Stokes and negative: 610 to 550 nm
+    const ColourMatching& eye = cie_1931_2_degree();
+    double white = 0.0;
+    for (int band = 0; band < 43; ++band)
+        white += eye.y[static_cast<std::size_t>(10 * band)];
+    EXPECT_NEAR(colour_under(matrix, "E").xyz[1], before - 25.0 * eye.y[190] / white, 1e-10);
+}
+
+TEST(ColourOfMatrix, WarnsOfUnlitExcitationAndOfUnknownReflectance) {
+    const ReradiationMatrix orange = shipped("synthetic-orange.csv");
+    EXPECT_TRUE(colour_warnings(orange, illuminant("D65"), "D65").empty());
+    const auto lamp = colour_warnings(orange, illuminant("FL2"), "FL2");
+    ASSERT_EQ(lamp.size(), 1u);
+    EXPECT_NE(lamp[0].find("starts at 380 nm"), std::string::npos) << lamp[0];
+    EXPECT_NE(lamp[0].find("8 excitation bands from 300 nm"), std::string::npos) << lamp[0];
+    ReradiationMatrix cut = orange;
+    cut.excitation.count = 31; // to 600 nm
+    cut.values = Eigen::MatrixXd(orange.values.leftCols(31));
+    const auto unknown = colour_warnings(cut, illuminant("D65"), "D65");
+    ASSERT_EQ(unknown.size(), 1u);
+    EXPECT_NE(unknown[0].find("300 to 600 nm"), std::string::npos) << unknown[0];
+}
+
+TEST(ColourOfMatrix, BandsOutsideTheVisibleAreRefused) {
+    ReradiationMatrix infrared;
+    infrared.emission = infrared.excitation = {900.0, 10.0, 3};
+    infrared.values.setIdentity(3, 3);
+    EXPECT_THROW(colour_under(infrared, "D65"), std::invalid_argument);
+}

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "host/error.h"
+#include "host/study/study_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <unistd.h>
+
+namespace reradiant::test {
+
+/// A folder with files of a study, removed with the test.
+class StudyTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder =
+            std::filesystem::temp_directory_path() /
+            ("reradiant-study-" + std::string(info->name()) + "-" + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder);
+        put("sample.toml", material);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+
+    void put(const std::string& name, const std::string& text) const {
+        std::ofstream(folder / name) << text;
+    }
+    Study load(const std::string& text) const {
+        put("study.toml", text);
+        return load_study(folder / "study.toml");
+    }
+    /// What loading says after the folder's name: "study.toml:LINE:COLUMN: ...".
+    std::string refusal(const std::string& text) const {
+        try {
+            load(text);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.exit_code(), 2) << error.what();
+            const std::string what = error.what();
+            const std::string prefix = (folder / "").string();
+            return what.starts_with(prefix) ? what.substr(prefix.size()) : what;
+        }
+        ADD_FAILURE() << "was taken:\n" << text;
+        return {};
+    }
+
+    std::filesystem::path folder;
+    /// A dye beneath a varnish.
+    const std::string material =
+        "[material]\n"
+        "[[material.layer]]\n"
+        "ior = 1.5\n"
+        "alpha = 0.2\n"
+        "absorption = 0.1\n"
+        "[material.substrate]\n"
+        "type = \"lambert\"\n"
+        "[material.substrate.reradiation]\n"
+        "reflectance = 0.3\n"
+        "fluorophores = [{ excitation = { gaussian_nm = 450, sigma_nm = 30, scale = 0.5 }, "
+        "emission = { gaussian_nm = 550, sigma_nm = 20, scale = 1 }, quantum_yield = 0.8 }]\n";
+    /// Line 1 and 2 of studies; sweeps begin in line 3.
+    const std::string head = "[study]\nmaterial = \"sample.toml\"\n";
+};
+
+} // namespace reradiant::test

@@ -1,0 +1,80 @@
+#include "host/study/cell_measurement.h"
+
+#include "host/spectral/colour.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace reradiant {
+namespace {
+
+Material bare(double reflectance) {
+    Material material;
+    material.substrate.reflectance = Spectrum::constant(reflectance);
+    return material;
+}
+
+NamedIlluminant lamp(const std::string& name) {
+    return {name, illuminant_with_luminance(name, 1.0)};
+}
+
+// A perfect diffuser is white by definition, whatever the lamp. 1e-9: sums of some 40 bands.
+TEST(CellMeasurement, PerfectDiffuserHasTheWhiteOfTheLamp) {
+    const CellMeasurement cell = measure_cell(bare(1.0), {}, {lamp("D65"), lamp("A")});
+    ASSERT_EQ(cell.colours.size(), 2u);
+    for (const SeenColour& colour : cell.colours) {
+        EXPECT_NEAR(colour.xyz[1], 100.0, 1e-9);
+        EXPECT_NEAR(colour.lab[0], 100.0, 1e-9);
+        EXPECT_NEAR(colour.lab[1], 0.0, 1e-6);
+        EXPECT_NEAR(colour.lab[2], 0.0, 1e-6);
+        for (const double beta : colour.beta_t)
+            EXPECT_NEAR(beta, 1.0, 1e-9);
+        EXPECT_TRUE(std::isnan(colour.quantum_yield)) << "nothing fluoresces";
+    }
+    for (const double value : cell.polar[0].total)
+        EXPECT_NEAR(value, 1.0, 1e-9) << "a diffuser looks alike from everywhere";
+}
+
+// What the dye absorbs it re-radiates with its yield; the rest is reflected. 2 %: bands of 10 nm
+// keep what is emitted within the band of the excitation on the diagonal.
+TEST(CellMeasurement, QuantumYieldOfABareDyeIsItsOwn) {
+    Material material = bare(0.0);
+    material.substrate.fluorophores = {
+        {Spectrum::table({300, 340, 341, 460, 461, 780}, {0, 0, 0.6, 0.6, 0, 0}),
+         Spectrum::gaussian(580, 15, 1.0), 0.7}};
+    material.substrate.reflectance =
+        Spectrum::table({300, 340, 341, 460, 461, 780}, {1, 1, 0.4, 0.4, 1, 1});
+    const CellMeasurement cell = measure_cell(material, {}, {lamp("D65")});
+    EXPECT_NEAR(cell.colours[0].quantum_yield, 0.7, 0.014);
+    EXPECT_GT(*std::max_element(cell.colours[0].beta_t.begin(), cell.colours[0].beta_t.end()), 1.2)
+        << "fluorescent light comes on top and is not clamped";
+}
+
+TEST(CellMeasurement, BandsWithoutLightHaveNoRadianceFactor) {
+    const CellMeasurement cell =
+        measure_cell(bare(0.5), {}, {{"line", Spectrum::line(405, 2, 10.0)}});
+    const auto& beta = cell.colours[0].beta_t;
+    const int lit = cell.bands.band_of(405);
+    for (int band = 0; band < cell.bands.count; ++band)
+        if (band == lit)
+            EXPECT_NEAR(beta[static_cast<std::size_t>(band)], 0.5, 1e-9);
+        else
+            EXPECT_TRUE(std::isnan(beta[static_cast<std::size_t>(band)])) << band;
+}
+
+TEST(CellMeasurement, PolarCurveHasTheHighlightOnTheMirrorSide) {
+    Material material = bare(0.2);
+    Layer layer;
+    layer.alpha = 0.1;
+    material.stack.layers = {layer};
+    const CellMeasurement cell = measure_cell(material, {}, {lamp("D65")});
+    const PolarCurve& curve = cell.polar[0];
+    const auto peak = std::max_element(curve.total.begin(), curve.total.end());
+    EXPECT_NEAR(curve.angle_deg[static_cast<std::size_t>(peak - curve.total.begin())], 45.0, 5.0);
+    EXPECT_GT(*peak, 10.0 * curve.diffuse[0]);
+}
+
+} // namespace
+} // namespace reradiant

@@ -1,0 +1,45 @@
+#include "host/study/render_method.h"
+
+#include "host/error.h"
+
+#include <gtest/gtest.h>
+
+namespace reradiant {
+namespace {
+
+std::string refusal(const std::string& list) {
+    try {
+        parse_methods(list);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exit_code(), 2);
+        return error.what();
+    }
+    ADD_FAILURE() << "'" << list << "' was taken";
+    return {};
+}
+
+TEST(RenderMethod, PartsAreReadInAnyOrder) {
+    const RenderMethod both = parse_method("comb:16+weidlich-wilkie");
+    EXPECT_EQ(both.model, Model::WeidlichWilkie);
+    EXPECT_EQ(both.comb_count, 16);
+    EXPECT_EQ(parse_method("comb").model, Model::Auto);
+    EXPECT_EQ(parse_method("adding").comb_count, 0);
+    EXPECT_EQ(parse_methods("adding,walk,comb:8").size(), 3u);
+}
+
+TEST(RenderMethod, WhatIsNotKnownIsNamed) {
+    EXPECT_NE(refusal("adding,magic").find("--methods: 'magic'"), std::string::npos);
+    EXPECT_NE(refusal("adding+hero").find("'hero'"), std::string::npos);
+    EXPECT_NE(refusal("adding+walk").find("two models"), std::string::npos);
+    EXPECT_NE(refusal("adding,adding").find("twice"), std::string::npos);
+    for (const char* text : {"", "adding,", "comb:0", "comb:-1", "comb:4097", "comb:", "comb:8x",
+                             "adding+", "comb:8+comb:9"})
+        EXPECT_NE(refusal(text).find("--methods"), std::string::npos) << text;
+}
+
+TEST(RenderMethod, FileNamesHoldNoColon) {
+    EXPECT_EQ(parse_method("adding+comb:16").file_stem(), "adding+comb-16");
+}
+
+} // namespace
+} // namespace reradiant

@@ -1,0 +1,80 @@
+#include "tests/tools/program_runner.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+using namespace reradiant;
+
+namespace {
+
+using FitCommand = ProgramTest;
+
+/// A measured matrix of one fluorophore on 30 bands, in the form of INTERFACE.
+std::string measured_csv() {
+    std::string text = "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
+                       "# kind: measured\nnm";
+    for (int i = 0; i < 30; ++i)
+        text += fmt::format(",{}", 400 + 10 * i);
+    text += '\n';
+    for (int o = 0; o < 30; ++o) {
+        text += fmt::format("{}", 400 + 10 * o);
+        for (int i = 0; i < 30; ++i) {
+            const double e = (o - 18) / 3.0, x = (i - 8) / 4.0;
+            // A fixed ripple stands for noise.
+            const double noise = 2e-4 * std::sin(12.9898 * o + 78.233 * i);
+            text += fmt::format(",{}", (o == i  ? 0.2
+                                        : o > i ? 0.05 * std::exp(-0.5 * (e * e + x * x))
+                                                : 0.0) +
+                                           noise);
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+} // namespace
+
+TEST_F(FitCommand, WritesMatrixModelReportAndJson) {
+    put("data.csv", measured_csv());
+    const ProgramResult result = run("fit data.csv -o out.csv --rank 1 --model-file model.toml "
+                                     "--report report.html --json fit.json");
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const auto json = nlohmann::json::parse(file_bytes(folder / "fit.json"));
+    EXPECT_EQ(json["model"], "factors");
+    EXPECT_EQ(json["rank"], 1);
+    EXPECT_EQ(json["bytes"], 4 * 60);
+    EXPECT_EQ(json["converged"], true);
+    EXPECT_LE(json["kkt"].get<double>(), 1e-8);
+    EXPECT_EQ(json["anti_stokes_energy"], 0.0);
+    EXPECT_LT(json["relative_rmse"].get<double>(), 0.02);
+    EXPECT_GT(json["iterations"].get<int>(), 0);
+    EXPECT_GT(json["seconds"].get<double>(), 0.0);
+    ASSERT_EQ(json["quantum_yield"].size(), 1u);
+    EXPECT_LE(json["quantum_yield"][0]["low"], json["quantum_yield"][0]["value"]);
+    EXPECT_NE(file_bytes(folder / "out.csv").find("# kind: model"), std::string::npos);
+    EXPECT_EQ(run("validate out.csv").exit_code, 0);
+    EXPECT_EQ(run("validate model.toml").exit_code, 0);
+}
+
+TEST_F(FitCommand, BadInputIsRefusedAndNothingIsWritten) {
+    put("data.csv", measured_csv());
+    put("headless.csv", "# reradiation\nnm,400\n400,0.1\n");
+    put("bare.toml", "[material]\n");
+    expect_failure(2, "fit none.csv -o out.csv", "none.csv");
+    expect_failure(2, "fit headless.csv -o out.csv", "headless.csv:");
+    expect_failure(2, "fit data.csv -o out.csv --rank 9", "--rank 9");
+    expect_failure(2, "fit data.csv -o out.csv --model splines", "--model splines");
+    expect_failure(2, "fit data.csv -o out.csv --loss l1", "--loss l1");
+    expect_failure(2, "fit data.csv -o nowhere/out.csv", "nowhere");
+    expect_failure(2, "fit data.csv -o out.csv --stack bare.toml", "bare.toml:1");
+    expect_failure(2, "fit data.csv -o out.csv --unknown thickness", "--stack");
+}
+
+TEST_F(FitCommand, NothingIsWrittenWithoutConvergence) {
+    put("data.csv", measured_csv());
+    expect_failure(1, "fit data.csv -o out.csv --model-file m.toml --json j.json "
+                      "--most-iterations 1",
+                   "did not converge");
+}

@@ -1,0 +1,103 @@
+#include "tests/tools/program_runner.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+using namespace reradiant;
+
+namespace {
+
+const std::string examples = RERADIANT_SOURCE_DIR "/tools/examples/";
+const std::string matrices = RERADIANT_SOURCE_DIR "/spectra/reradiation/";
+const std::string polygons = RERADIANT_SOURCE_DIR "/spectra/polygons/en-iso-20471.csv";
+
+class SynthAndColour : public ProgramTest {
+protected:
+    nlohmann::json json(const std::string& name) const {
+        return nlohmann::json::parse(file_bytes(folder / name));
+    }
+};
+
+} // namespace
+
+TEST_F(SynthAndColour, SynthWritesDataThatColourReads) {
+    const ProgramResult made = run("synth " + examples +
+                                   "synth-orange.toml -o data.csv --truth truth.csv --seed 3 "
+                                   "--json synth.json");
+    ASSERT_EQ(made.exit_code, 0) << made.errors;
+    EXPECT_NE(made.output.find("2009 entries"), std::string::npos) << made.output;
+    EXPECT_NE(file_bytes(folder / "data.csv").find("# kind: measured"), std::string::npos);
+    EXPECT_NE(file_bytes(folder / "truth.csv").find("# kind: model"), std::string::npos);
+    EXPECT_EQ(json("synth.json")["seed"], 3);
+    EXPECT_GT(json("synth.json")["noise_rms"], 0.0);
+    const ProgramResult seen =
+        run("colour data.csv --against truth.csv --illuminant D65,FL2 --json colour.json "
+            "--plot factors.svg --polygons " +
+            polygons);
+    ASSERT_EQ(seen.exit_code, 0) << seen.output << seen.errors;
+    const auto colour = json("colour.json");
+    EXPECT_EQ(colour["D65"]["beta_T"].size(), 41u);
+    EXPECT_EQ(colour["D65"]["xy"].size(), 2u);
+    EXPECT_EQ(colour["D65"]["Lab"].size(), 3u);
+    EXPECT_TRUE(colour["D65"].contains("whiteness"));
+    EXPECT_FALSE(colour["FL2"].contains("whiteness"));
+    EXPECT_EQ(colour["D65"]["polygons"][1]["name"], "fluorescent orange-red");
+    // Noise of 0.7 % of the peak, bandpass and spill move the colour little, and not by nothing.
+    EXPECT_GT(colour["D65"]["ciede2000"], 1e-3);
+    EXPECT_LT(colour["D65"]["ciede2000"], 5.0);
+    EXPECT_NE(seen.errors.find("380 nm"), std::string::npos) << seen.errors;
+    EXPECT_EQ(file_bytes(folder / "factors.svg").substr(0, 4), "<svg");
+}
+
+TEST_F(SynthAndColour, LayeredDataCarryStandardErrors) {
+    const ProgramResult made = run("synth " + examples + "synth-varnished.toml -o data.csv");
+    ASSERT_EQ(made.exit_code, 0) << made.errors;
+    const std::string text = file_bytes(folder / "data.csv");
+    EXPECT_NE(text.find("lambda_o_nm,value,stderr,part"), std::string::npos);
+    EXPECT_NE(text.find(",diffuse"), std::string::npos);
+    EXPECT_EQ(text.find(",nan,"), std::string::npos);
+    ASSERT_EQ(run("synth " + examples + "synth-varnished.toml -o again.csv").exit_code, 0);
+    EXPECT_EQ(text, file_bytes(folder / "again.csv"));
+    ASSERT_EQ(run("synth " + examples + "synth-varnished.toml -o other.csv --seed 2").exit_code, 0);
+    EXPECT_NE(text, file_bytes(folder / "other.csv"));
+}
+
+TEST_F(SynthAndColour, QuietSaysNothing) {
+    const ProgramResult seen =
+        run("colour " + matrices + "synthetic-orange.csv --illuminant FL2 --quiet");
+    EXPECT_EQ(seen.exit_code, 0);
+    EXPECT_TRUE(seen.output.empty()) << seen.output;
+    EXPECT_TRUE(seen.errors.empty()) << seen.errors;
+}
+
+TEST_F(SynthAndColour, NoPolygonThatPassesIsExitThree) {
+    put("blue.csv", "name,illuminant,minimum_luminance_factor,corners\n"
+                    "blue,D65,0.1,0.14,0.05,0.2,0.1,0.2,0.2,0.1,0.2\n");
+    const ProgramResult seen =
+        run("colour " + matrices + "synthetic-orange.csv --polygons blue.csv --json out.json");
+    EXPECT_EQ(seen.exit_code, 3);
+    EXPECT_NE(seen.errors.find("none of the polygons"), std::string::npos) << seen.errors;
+    EXPECT_EQ(json("out.json")["D65"]["polygons"][0]["passes"], false);
+}
+
+TEST_F(SynthAndColour, BadInputIsExitTwoAtItsPlace) {
+    put("bad.toml", "reflectance = 2\n");
+    put("bad.csv", "# reradiation\n# quantity: per-band\nnm,500,510\n");
+    expect_failure(2, "synth bad.toml -o data.csv", "bad.toml:1:1: ");
+    expect_failure(2, "synth missing.toml -o data.csv", "missing.toml: ");
+    expect_failure(2, "synth " + examples + "synth-orange.toml", "--output");
+    expect_failure(2, "synth " + examples + "synth-orange.toml -o data.bfc", "data.bfc: ");
+    expect_failure(2, "synth " + examples + "synth-orange.toml -o data.csv --truth truth.txt",
+                   "truth.txt: ");
+    expect_failure(2, "synth " + examples + "synth-orange.toml -o nowhere/data.csv", "nowhere");
+    expect_failure(2, "colour bad.csv", "bad.csv:3:1: ");
+    const std::string orange = "colour " + matrices + "synthetic-orange.csv ";
+    expect_failure(2, orange + "--illuminant D66", "there is no illuminant 'D66'");
+    expect_failure(2, orange + "--illuminant A --polygons " + polygons, "en-iso-20471.csv:7:1: ");
+    expect_failure(2, orange + "--against missing.csv", "missing.csv: ");
+}
+
+TEST_F(SynthAndColour, Case53FullDiskIsExitOne) {
+    expect_failure(1, "colour " + matrices + "synthetic-orange.csv --json /dev/full", "/dev/full");
+}

@@ -1,0 +1,262 @@
+#include "host/atomic_file.h"
+#include "host/error.h"
+#include "host/report/json_file.h"
+#include "host/report/svg.h"
+#include "host/spectral/colour_of_matrix.h"
+#include "host/spectral/colour_polygons.h"
+#include "host/spectral/matrix_io.h"
+#include "tools/command.h"
+#include "tools/parse_options.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+namespace reradiant {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int exit_no_polygon_passes = 3;
+
+struct ColourOptions {
+    fs::path matrix, against, polygons, plot;
+    std::vector<std::string> illuminants{"D65"};
+    bool e308 = false;
+};
+
+struct PolygonVerdict {
+    ColourPolygon polygon;
+    PolygonResult result;
+};
+
+/// All that is said about a matrix under one illuminant.
+struct ColourReport {
+    std::string illuminant;
+    MatrixColour colour;
+    std::optional<Whiteness> whiteness; ///< only where it is defined: D65 and C
+    std::optional<double> ciede2000;
+    std::vector<PolygonVerdict> polygons;
+    std::vector<std::string> warnings;
+
+    /// Emission band of the largest total radiance factor; NaN is never the largest.
+    std::size_t brightest_band() const {
+        std::size_t best = 0;
+        for (std::size_t o = 0; o < colour.total.size(); ++o)
+            if (!(colour.total[o] <= colour.total[best]) && !std::isnan(colour.total[o]))
+                best = o;
+        return best;
+    }
+};
+
+Spectrum illuminant_option(const std::string& name) {
+    try {
+        return illuminant(name);
+    } catch (const std::invalid_argument& error) {
+        throw_input_error({}, fmt::format("--illuminant: {}", error.what()));
+    }
+}
+
+MatrixColour colour_of_file(const fs::path& file, const ReradiationMatrix& matrix,
+                            const std::string& name, ColourSum sum) {
+    try {
+        return colour_of_matrix(matrix, illuminant_option(name), sum);
+    } catch (const std::invalid_argument& error) {
+        throw_input_error({file.string()}, fmt::format("under {}, {}", name, error.what()),
+                          "a colour needs emission bands in the visible, and light there");
+    }
+}
+
+/// Refuses polygons that no requested illuminant can test: their verdict would be missed.
+std::vector<ColourPolygon> read_polygons(const ColourOptions& options) {
+    if (options.polygons.empty())
+        return {};
+    std::vector<ColourPolygon> polygons = read_colour_polygons(options.polygons);
+    for (const ColourPolygon& polygon : polygons)
+        if (std::find(options.illuminants.begin(), options.illuminants.end(), polygon.illuminant) ==
+            options.illuminants.end())
+            throw_input_error(
+                {options.polygons.string(), polygon.line, 1},
+                fmt::format("'{}' is tested under {}", polygon.name, polygon.illuminant),
+                fmt::format("add {} to --illuminant", polygon.illuminant));
+    return polygons;
+}
+
+std::vector<ColourReport> report_colours(const ColourOptions& options,
+                                         const ReradiationMatrix& matrix) {
+    const ColourSum sum = options.e308 ? ColourSum::E308 : ColourSum::Bands;
+    const std::vector<ColourPolygon> polygons = read_polygons(options);
+    std::optional<ReradiationMatrix> other;
+    if (!options.against.empty())
+        other = read_reradiation(options.against);
+    std::vector<ColourReport> reports;
+    for (const std::string& name : options.illuminants) {
+        ColourReport report{.illuminant = name,
+                            .colour = colour_of_file(options.matrix, matrix, name, sum),
+                            .whiteness = {},
+                            .ciede2000 = {},
+                            .polygons = {},
+                            .warnings = colour_warnings(matrix, illuminant_option(name), name)};
+        if (name == "D65" || name == "C")
+            report.whiteness = cie_whiteness(report.colour.xyz, report.colour.white);
+        if (other)
+            report.ciede2000 = ciede2000(report.colour.lab,
+                                         colour_of_file(options.against, *other, name, sum).lab);
+        for (const ColourPolygon& polygon : polygons)
+            if (polygon.illuminant == name)
+                report.polygons.push_back({polygon, test_polygon(polygon, report.colour)});
+        reports.push_back(std::move(report));
+    }
+    return reports;
+}
+
+Json to_json(const ColourReport& report) {
+    const MatrixColour& colour = report.colour;
+    const std::size_t brightest = report.brightest_band();
+    Json json = {
+        {"XYZ", colour.xyz},
+        {"xy", colour.xy},
+        {"Lab", colour.lab},
+        {"white_XYZ", colour.white},
+        {"luminance_factor",
+         {{"total", colour.xyz[1] / 100.0},
+          {"reflected", colour.luminance_reflected / 100.0},
+          {"luminescent", (colour.xyz[1] - colour.luminance_reflected) / 100.0}}},
+        {"largest_beta_T", {{"value", colour.total[brightest]}, {"nm", colour.nm[brightest]}}}};
+    if (report.whiteness)
+        json.update({{"whiteness", report.whiteness->whiteness},
+                     {"tint", report.whiteness->tint},
+                     {"whiteness_within_limits", report.whiteness->within_limits}});
+    if (report.ciede2000)
+        json["ciede2000"] = *report.ciede2000;
+    for (const PolygonVerdict& verdict : report.polygons)
+        json["polygons"].push_back({{"name", verdict.polygon.name},
+                                    {"passes", verdict.result.passes()},
+                                    {"chromaticity", verdict.result.chromaticity},
+                                    {"luminance_factor", verdict.result.luminance_factor}});
+    json.update({{"nm", colour.nm},
+                 {"beta_T", colour.total},
+                 {"beta_R", colour.reflected},
+                 {"beta_L", colour.luminescent},
+                 {"warnings", report.warnings}});
+    return json;
+}
+
+void print_polygons(const ColourReport& report) {
+    for (const PolygonVerdict& verdict : report.polygons)
+        fmt::print("  {}: {} (chromaticity {}, luminance factor {:.4f} {} {})\n",
+                   verdict.polygon.name, verdict.result.passes() ? "passes" : "fails",
+                   verdict.result.chromaticity ? "inside" : "outside", report.colour.xyz[1] / 100.0,
+                   verdict.result.luminance_factor ? "of at least" : "is under",
+                   verdict.polygon.minimum_luminance_factor);
+}
+
+void print(const ColourReport& report, const ColourOptions& options) {
+    const MatrixColour& colour = report.colour;
+    const std::size_t brightest = report.brightest_band();
+    fmt::print("{}\n", report.illuminant);
+    fmt::print("  XYZ  {:.4f} {:.4f} {:.4f}\n", colour.xyz[0], colour.xyz[1], colour.xyz[2]);
+    fmt::print("  xy   {:.5f} {:.5f}\n", colour.xy[0], colour.xy[1]);
+    fmt::print("  Lab  {:.4f} {:.4f} {:.4f}\n", colour.lab[0], colour.lab[1], colour.lab[2]);
+    fmt::print("  luminance factor {:.4f} = {:.4f} reflected + {:.4f} re-radiated\n",
+               colour.xyz[1] / 100.0, colour.luminance_reflected / 100.0,
+               (colour.xyz[1] - colour.luminance_reflected) / 100.0);
+    fmt::print("  largest total radiance factor {:.4f} at {:.6g} nm\n", colour.total[brightest],
+               colour.nm[brightest]);
+    if (report.whiteness)
+        fmt::print("  whiteness {:.2f}, tint {:.2f}{}\n", report.whiteness->whiteness,
+                   report.whiteness->tint,
+                   report.whiteness->within_limits ? "" : " (no white: outside the limits)");
+    if (report.ciede2000)
+        fmt::print("  CIEDE2000 {:.4f} from {}\n", *report.ciede2000, options.against.string());
+    print_polygons(report);
+    fmt::print("  {:>7} {:>9} {:>9} {:>9}\n", "nm", "beta_T", "beta_R", "beta_L");
+    for (std::size_t o = 0; o < colour.nm.size(); ++o)
+        fmt::print("  {:>7.6g} {:>9.5f} {:>9.5f} {:>9.5f}\n", colour.nm[o], colour.total[o],
+                   colour.reflected[o], colour.luminescent[o]);
+}
+
+void write_plot(const ColourOptions& options, const std::vector<ColourReport>& reports) {
+    if (options.plot.empty())
+        return;
+    const std::vector<double>& nm = reports.front().colour.nm;
+    std::vector<svg::Series> series;
+    for (const ColourReport& report : reports) {
+        series.push_back({report.illuminant + " total", nm, report.colour.total});
+        series.push_back({report.illuminant + " luminescent", nm, report.colour.luminescent});
+    }
+    series.push_back({"reflected", nm, reports.front().colour.reflected});
+    const svg::Axes axes{.title = options.matrix.filename().string(),
+                         .x_label = "wavelength / nm",
+                         .y_label = "radiance factor"};
+    write_text_atomically(options.plot, svg::line_plot(axes, series));
+}
+
+bool some_polygon_passes(const std::vector<ColourReport>& reports) {
+    return std::any_of(reports.begin(), reports.end(), [](const ColourReport& report) {
+        return std::any_of(report.polygons.begin(), report.polygons.end(),
+                           [](const PolygonVerdict& verdict) { return verdict.result.passes(); });
+    });
+}
+
+int run_colour(const ColourOptions& options, const CommonOptions& common) {
+    for (const fs::path& output : {options.plot, common.json})
+        if (!output.empty())
+            check_output_folder(output);
+    const ReradiationMatrix matrix = read_reradiation(options.matrix);
+    const std::vector<ColourReport> reports = report_colours(options, matrix);
+    Json json = Json::object();
+    for (const ColourReport& report : reports) {
+        json[report.illuminant] = to_json(report);
+        for (const std::string& warning : report.warnings)
+            spdlog::warn("{}: {}", options.matrix.string(), warning);
+        if (!common.quiet)
+            print(report, options);
+    }
+    write_plot(options, reports);
+    write_json(common.json, json);
+    if (options.polygons.empty() || some_polygon_passes(reports))
+        return 0;
+    fmt::print(stderr, "{}: the colour passes none of the polygons of {}\n",
+               options.matrix.string(), options.polygons.string());
+    return exit_no_polygon_passes;
+}
+
+} // namespace
+
+void add_colour_command(CLI::App& program, CommandContext& context) {
+    auto options = std::make_shared<ColourOptions>();
+    CLI::App* const command = program.add_subcommand(
+        "colour", "Colour of a re-radiation matrix: XYZ, xy, Lab, whiteness, radiance factors");
+    command->add_option("MATRIX", options->matrix, "re-radiation matrix (.csv, .bfc, .exr)")
+        ->required();
+    command
+        ->add_option("--illuminant", options->illuminants,
+                     "CIE illuminants: D65,A,FL2,LED-B3; an unknown name lists them all")
+        ->delimiter(',')
+        ->capture_default_str();
+    command->add_flag("--e308", options->e308,
+                      "sums over 1 nm between the bands (ASTM E308, E2022) instead of plain sums "
+                      "at the bands");
+    command->add_option("--against", options->against,
+                        "CIEDE2000 to the colour of this matrix, under each illuminant");
+    command->add_option("--polygons", options->polygons,
+                        "CSV of chromaticity regions and luminance factors to test against, for "
+                        "instance spectra/polygons/en-iso-20471.csv; exit with 3 when none passes");
+    command->add_option("--plot", options->plot, "write the radiance factors as an SVG plot");
+    command->footer("Examples:\n"
+                    "  reradiant colour paint.bfc --illuminant D65,A --json colour.json\n"
+                    "  reradiant colour vest.csv --polygons spectra/polygons/en-iso-20471.csv\n"
+                    "  reradiant colour fit.csv --against data.csv --plot factors.svg");
+    command->callback(
+        [options, &context] { context.exit_code = run_colour(*options, context.common); });
+}
+
+} // namespace reradiant

@@ -1,0 +1,102 @@
+#include "host/study/converge.h"
+#include "host/error.h"
+#include "host/report/json_file.h"
+#include "host/report/progress.h"
+#include "host/study/converge_page.h"
+#include "host/study/converge_store.h"
+#include "tools/command.h"
+#include "tools/interrupt.h"
+#include "tools/parse_options.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace reradiant {
+
+namespace {
+
+struct ConvergeCommand {
+    std::filesystem::path scene;
+    ConvergeOptions options;
+    std::string methods = "auto,auto+comb:16,weidlich-wilkie", bands;
+};
+
+void print_summary(const ConvergeResult& result, const std::filesystem::path& folder) {
+    for (const MethodResult& method : result.methods) {
+        const ErrorCurve& curve = method.curve;
+        const CurveRow& last = curve.rows.back();
+        const BiasFloor floor = bias_floor(curve, result.reference.estimate);
+        fmt::print("{}: relMSE {:.3g} after {:.3g} s ({} spp), slope of RMSE {:.3f}, efficiency "
+                   "{:.3g}{}{}\n",
+                   curve.method.name, last.error.relmse, last.seconds, last.samples,
+                   slope_over_samples(curve), efficiency(curve),
+                   floor.relmse > 0.0 ? fmt::format(", bias floor {:.3g}", floor.relmse) : "",
+                   method.resumed ? " (kept from an earlier run)" : "");
+    }
+    fmt::print("{}\n", result.interrupted ? "interrupted: run again to go on"
+                                          : (folder / "index.html").string());
+}
+
+int run_converge(ConvergeCommand command, const CommandContext& context) {
+    const CommonOptions& common = context.common;
+    ConvergeOptions& options = command.options;
+    options.methods = parse_methods(command.methods);
+    if (!command.bands.empty())
+        options.render.bands = parse_bands_option(command.bands);
+    options.render.seed = common.seed;
+    options.render.threads = common.threads;
+    options.folder = output_directory(options.folder);
+    const Scene scene = load_scene(command.scene);
+    prepare_opencl(common.threads);
+    const Device device(common.device);
+    catch_interrupts();
+    ConvergeResult result;
+    {
+        ProgressBar bar(common.quiet);
+        result = converge(scene, device, options, [&](double share, const std::string& note) {
+            bar.update(share, note);
+            return !interrupt_requested();
+        });
+    }
+    if (!result.methods.empty()) {
+        const auto json = converge_json(result, scene, device, options.time_seconds);
+        write_curves_csv(options.folder / "curve.csv", result);
+        write_json(options.folder / "curve.json", json);
+        write_json(common.json, json);
+        write_converge_page(options.folder, result, scene, device);
+    }
+    if (!common.quiet)
+        print_summary(result, options.folder);
+    return result.interrupted ? exit_interrupted : 0;
+}
+
+} // namespace
+
+void add_converge_command(CLI::App& program, CommandContext& context) {
+    auto command = std::make_shared<ConvergeCommand>();
+    CLI::App* const app = program.add_subcommand(
+        "converge", "Measures error against run time: CSV, JSON, plots and a page");
+    app->add_option("SCENE", command->scene, "scene file (TOML)")->required();
+    app->add_option("-o,--output", command->options.folder, "folder to write to")->required();
+    app->add_option("--methods", command->methods,
+                    "separated by commas: a model, comb:N, or both as adding+comb:16")
+        ->capture_default_str();
+    app->add_option("--reference", command->options.reference,
+                    "spectral EXR to compare with; default: one is rendered");
+    app->add_option("--spp-reference", command->options.reference_samples,
+                    "samples a pixel of the reference that is rendered; default: as many as ten "
+                    "times --time allow")
+        ->check(CLI::Range(1u, 1u << 30));
+    app->add_option("--time", command->options.time_seconds, "seconds of rendering, each method")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app->add_option("--bands", command->bands, "film bands in nm, FROM:TO:STEP");
+    app->add_option("--memory-limit", command->options.render.memory_limit_bytes,
+                    "refuse a render that would take more bytes (default: 80 % of the machine's)");
+    app->footer("Example: reradiant converge scene.toml -o errors --methods adding,adding+comb:16 "
+                "--time 20");
+    app->callback([command, &context] { context.exit_code = run_converge(*command, context); });
+}
+
+} // namespace reradiant

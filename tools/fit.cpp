@@ -1,0 +1,192 @@
+#include "host/fit/fit.h"
+#include "host/error.h"
+#include "host/fit/fit_report.h"
+#include "host/fit/model_file.h"
+#include "host/report/json_file.h"
+#include "host/scene/stack_file.h"
+#include "host/spectral/matrix_io.h"
+#include "tools/command.h"
+#include "tools/parse_options.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <memory>
+
+namespace reradiant {
+
+namespace {
+
+struct FitOptions {
+    std::filesystem::path data, output, stack, report, model_file;
+    std::string model = "factors", loss = "none";
+    std::optional<int> rank;
+    std::optional<double> smooth_nm, spill_nm;
+    std::vector<std::string> unknown;
+    bool anti_stokes = false;
+    double seconds = 60.0;
+    int iterations = SolverSettings{}.most_iterations;
+};
+
+FitSettings settings_of(const FitOptions& options, const CommonOptions& common) {
+    FitSettings settings;
+    settings.model = fit_model_from_name(options.model);
+    settings.loss = robust_loss_from_name(options.loss);
+    settings.rank = options.rank;
+    settings.smooth_nm = options.smooth_nm;
+    settings.spill_nm = options.spill_nm;
+    settings.anti_stokes = options.anti_stokes;
+    settings.unknown = unknown_layers_from_names(options.unknown);
+    settings.seed = common.seed;
+    settings.solver.most_seconds = options.seconds;
+    settings.solver.most_iterations = options.iterations;
+    settings.solver.threads = std::max(1, common.threads);
+    if (!options.stack.empty())
+        settings.stack = load_stack(options.stack);
+    return settings;
+}
+
+nlohmann::ordered_json json_of(const FitResult& result) {
+    nlohmann::ordered_json yields = nlohmann::ordered_json::array();
+    for (const QuantumYield& yield : result.quantum_yield)
+        yields.push_back({{"value", yield.value}, {"low", yield.low}, {"high", yield.high}});
+    nlohmann::ordered_json json = {{"model", fit_model_name(result.model)},
+                                   {"rank", result.rank},
+                                   {"rmse", result.rmse},
+                                   {"relative_rmse", result.relative_rmse},
+                                   {"bytes", result.bytes},
+                                   {"converged", result.trace.converged},
+                                   {"kkt", result.trace.kkt},
+                                   {"iterations", result.trace.iterations},
+                                   {"seconds", result.seconds},
+                                   {"quantum_yield", yields},
+                                   {"anti_stokes_energy", result.anti_stokes_energy},
+                                   {"stop_reason", result.trace.stop_reason},
+                                   {"smooth_nm", result.spacing_nm},
+                                   {"noise", result.noise},
+                                   {"noise_is_estimated", result.noise_is_estimated},
+                                   {"reduced_chi_squared", result.reduced_chi_squared},
+                                   {"parameters", result.parameters},
+                                   {"covariance_rank", result.covariance_rank},
+                                   {"notes", result.notes},
+                                   {"warnings", result.warnings}};
+    if (result.stack) {
+        nlohmann::ordered_json numbers = nlohmann::ordered_json::array();
+        for (std::size_t k = 0; k < result.stack->names.size(); ++k) {
+            const auto at = static_cast<Eigen::Index>(k);
+            numbers.push_back({{"name", result.stack->names[k]},
+                               {"value", result.stack->value(at)},
+                               {"sigma", result.stack->sigma(at)}});
+        }
+        json["stack"] = {{"numbers", numbers},
+                         {"rank", result.stack->rank},
+                         {"reduced_chi_squared", result.stack->reduced_chi_squared},
+                         {"ambiguities", result.stack->ambiguities}};
+    }
+    return json;
+}
+
+void print_summary(const FitOptions& options, const FitResult& result) {
+    fmt::print(
+        "{}: model {}, {} terms, {} bytes, relative RMSE {:.4f}, {} iterations in {:.2f} s\n",
+        options.output.string(), fit_model_name(result.model), result.rank, result.bytes,
+        result.relative_rmse, result.trace.iterations, result.seconds);
+    for (std::size_t k = 0; k < result.quantum_yield.size(); ++k)
+        fmt::print("quantum yield {}: {:.3f} ({:.3f} to {:.3f})\n", k + 1,
+                   result.quantum_yield[k].value, result.quantum_yield[k].low,
+                   result.quantum_yield[k].high);
+    fmt::print("the data determine {} of {} numbers\n", result.covariance_rank, result.parameters);
+    if (result.stack)
+        for (std::size_t k = 0; k < result.stack->names.size(); ++k)
+            fmt::print("{}: {:.6g} +- {:.2g}\n", result.stack->names[k],
+                       result.stack->value(static_cast<Eigen::Index>(k)),
+                       result.stack->sigma(static_cast<Eigen::Index>(k)));
+    for (const std::string& note : result.notes)
+        fmt::print("{}\n", note);
+}
+
+void warn(const FitResult& result) {
+    for (const std::string& warning : result.warnings)
+        spdlog::warn("{}", warning);
+    if (result.stack)
+        for (const std::string& ambiguity : result.stack->ambiguities)
+            spdlog::warn("{}", ambiguity);
+}
+
+int run_fit(const FitOptions& options, const CommonOptions& common) {
+    const FitSettings settings = settings_of(options, common);
+    for (const std::filesystem::path* file :
+         {&options.output, &options.report, &options.model_file})
+        if (!file->empty())
+            check_output_folder(*file);
+    const BispectralData data = read_bispectral_data(options.data);
+    const FitResult result = fit_reradiation(data, settings);
+    warn(result);
+    if (!result.failure.empty())
+        throw_runtime_error(options.data.string() + ": " + result.failure,
+                            "try another --model or --rank, or --loss huber for outliers");
+    write_reradiation(options.output, result.matrix);
+    if (!options.model_file.empty()) {
+        const std::filesystem::path beside =
+            std::filesystem::relative(std::filesystem::absolute(options.output),
+                                      std::filesystem::absolute(options.model_file).parent_path());
+        const double difference = write_model_file(options.model_file, result, beside);
+        if (difference > 0.01)
+            spdlog::warn("{}: tables integrated over the bands differ from the fitted matrix by up "
+                         "to {:.1f} % of its peak",
+                         options.model_file.string(), 100.0 * difference);
+    }
+    if (!options.report.empty())
+        write_fit_report(options.report, data, result);
+    write_json(common.json, json_of(result));
+    if (!common.quiet)
+        print_summary(options, result);
+    return 0;
+}
+
+} // namespace
+
+void add_fit_command(CLI::App& program, CommandContext& context) {
+    auto options = std::make_shared<FitOptions>();
+    CLI::App* const command = program.add_subcommand(
+        "fit", "Fits a re-radiation matrix to bispectral data, bare or through a layer");
+    command->add_option("DATA", options->data, "re-radiation CSV, CSV of `measure`, .BFC or .exr")
+        ->required();
+    command->add_option("-o,--output", options->output, "re-radiation matrix to write")->required();
+    command->add_option("--model", options->model, "factors, gaussians or matrix")
+        ->capture_default_str();
+    command->add_option("--rank", options->rank,
+                        "terms: 1 to 4 factors or 1 to 24 gaussians; default: by evidence");
+    command->add_option("--smooth-nm", options->smooth_nm,
+                        "spacing of the spline functions of factors, 0: one number a band");
+    command
+        ->add_option("--spill-nm", options->spill_nm,
+                     "entries this near to the diagonal are not fitted; default: one band")
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--loss", options->loss, "none, huber or cauchy")->capture_default_str();
+    command->add_option("--stack", options->stack,
+                        "MATERIAL.toml whose layers lay above the sample");
+    command
+        ->add_option("--unknown", options->unknown,
+                     "numbers of the stack that are fitted, too: thickness,absorption,ior")
+        ->delimiter(',');
+    command->add_flag("--anti-stokes", options->anti_stokes,
+                      "emission below the excitation is possible");
+    command->add_option("--report", options->report, "HTML report to write");
+    command->add_option("--model-file", options->model_file,
+                        "compact model as TOML, usable as RERADIATION");
+    command->add_option("--most-seconds", options->seconds, "time limit of one minimisation")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command
+        ->add_option("--most-iterations", options->iterations,
+                     "limit of Ceres' steps in one minimisation")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->footer("Example: reradiant fit orange.BFC -o orange.csv --report orange.html");
+    command->callback(
+        [options, &context] { context.exit_code = run_fit(*options, context.common); });
+}
+
+} // namespace reradiant

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace reradiant {
+
+constexpr int exit_interrupted = 130;
+
+/// From here on the first SIGINT or SIGTERM does not end the program: work that can stop asks
+/// interrupt_requested() between its steps and keeps what it has. The second one does.
+void catch_interrupts();
+bool interrupt_requested();
+
+} // namespace reradiant
