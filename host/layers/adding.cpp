@@ -4,38 +4,14 @@
 #include "host/layers/angular_system.h"
 #include "host/layers/angular_transport.h"
 #include "host/layers/smooth_transport.h"
+#include "host/layers/stack_check.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
 #include <deque>
 #include <mutex>
 
 namespace reradiant {
 
 namespace {
-
-void check_layer(const LayerValues& layer, std::size_t index) {
-    const auto refuse = [&](const char* what, double value, const char* remedy) {
-        throw_input_error({}, fmt::format("layer {} has {} {}", index + 1, what, value), remedy);
-    };
-    if (!(layer.ior > 0.0) || !std::isfinite(layer.ior)) {
-        refuse("index of refraction", layer.ior, "it must be a positive number");
-    }
-    if (!(layer.tau_scattering >= 0.0)) {
-        refuse("scattering depth", layer.tau_scattering,
-               "scattering coefficient and thickness must not be negative");
-    }
-    if (!(std::fabs(layer.anisotropy) < 1.0)) {
-        refuse("anisotropy", layer.anisotropy, "it must lie between -1 and 1");
-    }
-    if (!(layer.tau >= 0.0)) {
-        refuse("optical depth", layer.tau, "absorption and thickness must not be negative");
-    }
-    if (!(layer.alpha >= 0.0) || !(layer.alpha <= 1.0)) {
-        refuse("roughness alpha", layer.alpha, "it must be between 0 and 1");
-    }
-}
 
 /// The last transports of stacks that scatter: a grey material asks for the same one at every
 /// wavelength.
@@ -85,9 +61,9 @@ std::optional<std::string> adding_refusal(const LayerStack& stack) {
 }
 
 std::shared_ptr<const AddingTransport> adding_transport(const StackValues& stack) {
+    check_stack(stack);
     bool scatters = false;
     for (std::size_t k = 0; k < stack.size(); ++k) {
-        check_layer(stack[k], k);
         if (stack[k].flake_coverage > 0.0 || has_rough_film(stack, k)) {
             throw_input_error({}, stack[k].flake_coverage > 0.0 ? flakes_reason : film_reason,
                               "use the model walk or weidlich-wilkie");

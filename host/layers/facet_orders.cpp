@@ -15,6 +15,8 @@ using kernels::Vec3;
 namespace {
 
 constexpr int orders = 24;
+/// Share of the light whose further meetings are not followed.
+constexpr double negligible = 1e-4;
 /// Generator as in L'Ecuyer and Lemieux 2000, table 1.
 constexpr LatticeRule walk_rule{1021, 76};
 
@@ -25,7 +27,8 @@ void add_walk(int distribution, double alpha, const Vec3& wi, WalkNumbers number
     double weight = 1.0;
     double height =
         std::pow(1.0 - numbers.next(), 1.0 / (1.0 + microsurface::lambda(distribution, alpha, wi)));
-    for (int meeting = 1; meeting <= orders && weight > 0.0; ++meeting) {
+    int meeting = 1;
+    for (; meeting <= orders && weight > negligible; ++meeting) {
         const double u1 = numbers.next(), u2 = numbers.next();
         const Vec3 h = kernels::microfacet_sample(distribution, alpha, v, u1, u2);
         const Vec3 out =
@@ -38,7 +41,7 @@ void add_walk(int distribution, double alpha, const Vec3& wi, WalkNumbers number
         height = microsurface::next_height(distribution, alpha, out, height, numbers.next());
         v = microsurface::negated(out);
     }
-    shares(orders - 1) += weight;
+    shares(meeting - 2) += weight;
 }
 
 Eigen::MatrixXd walked_orders(const AddingTransport::Lobe& lobe) {

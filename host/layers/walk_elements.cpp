@@ -1,6 +1,7 @@
 #include "host/layers/walk_elements.h"
 
 #include "host/error.h"
+#include "host/layers/stack_check.h"
 
 #include <fmt/format.h>
 
@@ -9,27 +10,6 @@
 namespace reradiant {
 
 namespace {
-
-void check(bool good, std::size_t layer, const char* what, double value, const char* remedy) {
-    if (!good) {
-        throw_input_error({}, fmt::format("layer {} has {} {}", layer + 1, what, value), remedy);
-    }
-}
-
-void check_layer(const LayerValues& layer, std::size_t k) {
-    check(layer.ior > 0.0 && std::isfinite(layer.ior), k, "index of refraction", layer.ior,
-          "it must be a positive number");
-    check(layer.alpha >= 0.0 && layer.alpha <= 1.0, k, "roughness alpha", layer.alpha,
-          "it must be between 0 and 1");
-    check(layer.tau >= 0.0, k, "optical depth", layer.tau,
-          "absorption and thickness must not be negative");
-    check(layer.tau_scattering >= 0.0, k, "scattering depth", layer.tau_scattering,
-          "scattering coefficient and thickness must not be negative");
-    check(std::fabs(layer.anisotropy) < 1.0, k, "anisotropy", layer.anisotropy,
-          "it must lie between -1 and 1");
-    check(layer.flake_coverage >= 0.0 && layer.flake_coverage <= 1.0, k, "flake coverage",
-          layer.flake_coverage, "it must be between 0 and 1");
-}
 
 /// The matrix as light feels it, or with nothing in it for a conductor.
 Eigen::MatrixXd checked_matrix(const WalkSubstrate& substrate, std::size_t bands) {
@@ -60,7 +40,6 @@ WalkElement surface_element(WalkElement::Kind kind, const WalkSurface& surface) 
 
 void add_layer(WalkElements& elements, const StackValues& stack, std::size_t k) {
     const LayerValues& layer = stack[k];
-    check_layer(layer, k);
     elements.push_back(surface_element(WalkElement::Kind::Surface, interface_surface(stack, k)));
     WalkElement& slab = elements.emplace_back();
     slab.kind = WalkElement::Kind::Slab;
@@ -78,12 +57,14 @@ void add_layer(WalkElements& elements, const StackValues& stack, std::size_t k) 
 
 WalkElements elements_at(const StackValues& stack, const WalkSubstrate& substrate, std::size_t band,
                          double wavelength_nm) {
+    check_stack(stack);
     WalkElements elements;
     for (std::size_t k = 0; k < stack.size(); ++k) {
         add_layer(elements, stack, k);
     }
     const double ior = stack.empty() ? 1.0 : stack.back().ior;
     if (!substrate.conductor.empty()) {
+        check_conductor(substrate.conductor[band]);
         elements.push_back(
             surface_element(WalkElement::Kind::Conductor,
                             conductor_surface(substrate.conductor[band], ior, wavelength_nm)));

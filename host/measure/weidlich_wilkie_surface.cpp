@@ -1,4 +1,5 @@
 #include "host/layers/quadrature.h"
+#include "host/layers/stack_check.h"
 #include "host/layers/weidlich_wilkie.h"
 #include "host/layers/weidlich_wilkie_residual.h"
 #include "host/measure/lobe_quadrature.h"
@@ -41,6 +42,10 @@ public:
             values.stack = std::move(stacks[k]);
             if (!substrate.conductor.empty()) {
                 values.conductor = substrate.conductor[k];
+            }
+            check_stack(values.stack);
+            if (values.conductor) {
+                check_conductor(*values.conductor);
             }
             const bool same = k > 0 && values == bands_[k - 1];
             residuals_.push_back(same ? residuals_.back()

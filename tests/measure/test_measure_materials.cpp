@@ -214,6 +214,29 @@ TEST(MeasureMaterials, AddingRefusesConductors) {
         Error);
 }
 
+TEST(MeasureMaterials, NumbersOutOfRangeAreRefusedByEveryModel) {
+    const auto refused = [](const LayerStack& stack, const MeasuredSubstrate& substrate) {
+        for (const Model model : {Model::WeidlichWilkie, Model::Walk}) {
+            EXPECT_THROW(measure_substrate(stack, substrate, one, hemispherical(model, {0})),
+                         Error);
+        }
+    };
+    refused({}, conductor(0.4, -1.0, 0.1));
+    refused({}, conductor(0.0, 1.0, 0.1));
+    refused({}, conductor(0.4, 1.0, 1.5));
+    refused({}, conductor(0.4, std::nan(""), 0.1));
+    refused({{layer(-1.5)}}, oren_nayar(0.5, 0.0));
+    Layer flaked = layer(1.5);
+    flaked.flakes = Flakes{1.5, {}};
+    refused({{flaked}}, oren_nayar(0.5, 0.0));
+    Layer filmed = layer(1.5);
+    filmed.film = ThinFilm{-10.0};
+    refused({{filmed}}, oren_nayar(0.5, 0.0));
+    Layer forward = layer(1.5);
+    forward.anisotropy = 1.0;
+    refused({{forward}}, oren_nayar(0.5, 0.0));
+}
+
 TEST(LobeQuadrature, ResolvesLobesOfAnyWidth) {
     const auto facets_above = [](double alpha, const Vec3& wi) {
         return integrate_about_mirror(wi, [&](const Vec3& wo) {
