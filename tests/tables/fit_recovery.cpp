@@ -94,6 +94,7 @@ int run(const TableOptions& options) {
         "| stack | step nm | K | K found | noise % of peak | RMSE % of peak | RMSE / noise | "
         "coverage % | quantum yield error % | s | failure |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    std::fflush(stdout);
     std::vector<TableLine> lines;
     for (const RecoveryCase& what : cases_of(options)) {
         lines.push_back(recover(what, options));
