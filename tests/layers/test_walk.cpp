@@ -110,7 +110,8 @@ TEST(Walk, Case29ReversedLightHasTheSameValue) {
         const WalkEstimate back =
             estimate_walk(walk.reversed(), b, {&a, 1}, samples(40000), 2 * k + 1);
         const auto compare = [&](double x, double x_error, double y, double y_error) {
-            EXPECT_NEAR(x, y, bound * std::hypot(x_error, y_error)) << k;
+            // a lobe without randomness is as exact as its rounding
+            EXPECT_NEAR(x, y, bound * std::hypot(x_error, y_error) + 1e-12 * x) << k;
         };
         const auto &m = there.mean.directional[0], &n = back.mean.directional[0];
         const auto &e = there.standard_error.directional[0],
