@@ -58,7 +58,8 @@ struct DirectionalLight {
 };
 /// Constant, or with an image: radiance times the texel's colour, rgb made into a spectrum of
 /// radiance (see rgb_emission in host/spectral/colour.h). Latitude-longitude: the top row looks
-/// along +y, the middle column along -z, rotated about y by rotation_deg.
+/// along +y, the middle column along -z, columns to its right towards +x; turned right-handed about
+/// +y by rotation_deg (90: the middle column looks along -x).
 struct EnvironmentLight {
     Spectrum radiance;
     int image = -1; ///< index into Scene::images
