@@ -20,6 +20,8 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Clock = std::chrono::steady_clock;
 
+constexpr double largest_radius = 1e9; ///< damping of at least 1e-9 of a column's square length
+
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -75,14 +77,16 @@ public:
         options.initial_trust_region_radius = radius_;
         options.num_threads = settings_.threads;
         options.logging_type = ceres::SILENT;
-        options.min_lm_diagonal = 1e-9;
+        // Factors may be mixed at no cost: without this much damping Cholesky fails there.
+        options.max_trust_region_radius = largest_radius;
         // Near the optimum a step changes the cost by less than its rounding.
         options.use_nonmonotonic_steps = true;
         set_linear_algebra(options);
         ceres::Solver::Summary summary;
         ceres::Solve(options, &problem_, &summary);
         if (!summary.iterations.empty())
-            radius_ = std::clamp(summary.iterations.back().trust_region_radius, 1.0, 1e16);
+            radius_ =
+                std::clamp(summary.iterations.back().trust_region_radius, 1.0, largest_radius);
         free_all();
         return summary;
     }
