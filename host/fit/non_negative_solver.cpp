@@ -20,6 +20,8 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Clock = std::chrono::steady_clock;
 
+constexpr double largest_radius = 1e9; ///< damping of at least 1e-9 of a column's square length
+
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -75,14 +77,16 @@ public:
         options.initial_trust_region_radius = radius_;
         options.num_threads = settings_.threads;
         options.logging_type = ceres::SILENT;
-        options.min_lm_diagonal = 1e-9;
+        // Factors may be mixed at no cost: without this much damping Cholesky fails there.
+        options.max_trust_region_radius = largest_radius;
         // Near the optimum a step changes the cost by less than its rounding.
         options.use_nonmonotonic_steps = true;
         set_linear_algebra(options);
         ceres::Solver::Summary summary;
         ceres::Solve(options, &problem_, &summary);
         if (!summary.iterations.empty())
-            radius_ = std::clamp(summary.iterations.back().trust_region_radius, 1.0, 1e16);
+            radius_ =
+                std::clamp(summary.iterations.back().trust_region_radius, 1.0, largest_radius);
         free_all();
         return summary;
     }
@@ -212,6 +216,45 @@ std::optional<std::string> reason_to_stop(SolveTrace& trace, const SolverSetting
     return std::nullopt;
 }
 
+/// Holds what sits at zero and was pushed below it; false when there was nothing of that kind.
+bool hold_pushed(const Vector& from, const Vector& target, const NonNegativeModel& model,
+                 std::vector<bool>& held) {
+    bool found = false;
+    for (Eigen::Index k = 0; k < from.size(); ++k) {
+        const bool pushed = from(k) <= 0.0 && target(k) < 0.0 && !model.may_be_negative(k);
+        found = found || (pushed && !held[static_cast<std::size_t>(k)]);
+        held[static_cast<std::size_t>(k)] = held[static_cast<std::size_t>(k)] || pushed;
+    }
+    return found;
+}
+
+/// One round: moves `parameters` to a point of lower cost, or leaves them where there is none. When
+/// the cut off step does not lower the cost, it is computed anew without what was cut off, and at
+/// last as a single step, which goes downhill. Returns what failed, or nothing.
+std::string take_round(Minimisation& minimisation, const NonNegativeModel& model,
+                       const SolverSettings& settings, Vector& parameters, double cost,
+                       std::vector<bool> held, SolveTrace& trace, Clock::time_point start) {
+    int steps = settings.steps_per_round;
+    while (trace.iterations < settings.most_iterations) {
+        const ceres::Solver::Summary summary =
+            minimisation.solve(held, std::min(steps, settings.most_iterations - trace.iterations),
+                               settings.most_seconds);
+        record(trace, summary, seconds_since(start) - summary.total_time_in_seconds);
+        if (summary.termination_type == ceres::FAILURE)
+            return "Ceres failed: " + summary.message;
+        const Vector target = minimisation.values();
+        const Vector next = projected_step(minimisation, model, parameters, target, cost);
+        minimisation.values() = next;
+        const bool moved = next != parameters;
+        parameters = next;
+        const bool more_held = !moved && hold_pushed(parameters, target, model, held);
+        if (moved || (!more_held && steps == 1))
+            break;
+        steps = more_held ? steps : 1;
+    }
+    return {};
+}
+
 } // namespace
 
 double kkt_violation(const Vector& parameters, const Vector& gradient, const Vector& curvature,
@@ -250,24 +293,19 @@ SolveTrace minimise_non_negative(const NonNegativeModel& model, Vector& paramete
         trace.kkt = kkt_violation(parameters, gradient, curvature, model);
         const bool is_stuck =
             cost >= last_cost * (1.0 - cost_rounding) && trace.kkt > 0.5 * last_kkt;
-        if (const auto reason =
-                reason_to_stop(trace, settings, is_stuck, seconds_since(begin))) {
+        if (const auto reason = reason_to_stop(trace, settings, is_stuck, seconds_since(begin))) {
             trace.stop_reason = *reason;
             return trace;
         }
         last_cost = cost;
         last_kkt = trace.kkt;
-        const ceres::Solver::Summary summary = minimisation.solve(
-            held_at_zero(parameters, gradient, curvature, model),
-            std::min(settings.steps_per_round, settings.most_iterations - trace.iterations),
-            settings.most_seconds);
-        record(trace, summary, seconds_since(start) - summary.total_time_in_seconds);
-        if (summary.termination_type == ceres::FAILURE) {
-            trace.stop_reason = "Ceres failed: " + summary.message;
+        if (const std::string fault =
+                take_round(minimisation, model, settings, parameters, cost,
+                           held_at_zero(parameters, gradient, curvature, model), trace, start);
+            !fault.empty()) {
+            trace.stop_reason = fault;
             return trace;
         }
-        parameters = projected_step(minimisation, model, parameters, minimisation.values(), cost);
-        minimisation.values() = parameters;
     }
 }
 

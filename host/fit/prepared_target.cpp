@@ -93,6 +93,12 @@ void set_weights(const BispectralBlock& block, const Matrix& used, PreparedTarge
         if (used(k) > 0.0 && std::isfinite(block.sigma(k)))
             known.push_back(block.sigma(k));
     prepared.noise_is_estimated = known.empty();
+    if (prepared.noise_is_estimated && (target.value.array() < 0.0).any()) {
+        prepared.notes.push_back(
+            fmt::format("{} negative entries without a standard error are fitted as zero",
+                        (target.value.array() < 0.0).count()));
+        target.value = target.value.cwiseMax(0.0);
+    }
     prepared.noise = known.empty() ? estimated_noise(block.value, used) : median(known);
     if (prepared.noise < floor) {
         prepared.noise = floor;
