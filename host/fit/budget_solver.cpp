@@ -1,6 +1,6 @@
 #include "host/fit/budget_solver.h"
 
-#include <fmt/format.h>
+#include <algorithm>
 
 namespace reradiant {
 
@@ -32,9 +32,8 @@ ModelFit minimise_within_budget(const FittedModel& model, const FitTarget& targe
     for (int round = 0; round < most_rounds; ++round) {
         append(fit.trace, minimise_non_negative(model, fit.parameters, settings, begin));
         const Eigen::VectorXd sums = target.photon_sums(model.matrix(fit.parameters));
-        // In units of a whole photon, which is 1 / scale.
-        const Eigen::VectorXd limit = target.budget;
-        if (!penalty.update(sums, limit, strength, tolerance / target.scale)) {
+        // The tolerance is a share of a photon, which is 1 / scale here.
+        if (!penalty.update(sums, target.budget, strength, tolerance / target.scale)) {
             fit.chi_squared = target.chi_squared(model.matrix(fit.parameters));
             return fit;
         }

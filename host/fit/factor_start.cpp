@@ -76,15 +76,17 @@ double descend_factors(const FitTarget& target, FactorCurves& curves, int sweeps
     Matrix residual = target.value - curves.emission * curves.excitation.transpose();
     for (int sweep = 0; sweep < sweeps; ++sweep)
         for (Eigen::Index k = 0; k < curves.emission.cols(); ++k) {
-            Vector e = curves.emission.col(k), x = curves.excitation.col(k);
+            const Vector e = curves.emission.col(k), x = curves.excitation.col(k);
             const Vector better_e = optimal_column(squared, residual, e, x);
-            residual -= (better_e - e) * x.transpose();
-            const Vector better_x = optimal_column(transposed, residual.transpose(), x, better_e);
-            residual -= better_e * (better_x - x).transpose();
             // A term that died would never come back.
-            if (better_e.maxCoeff() <= 0.0 || better_x.maxCoeff() <= 0.0)
+            if (better_e.maxCoeff() <= 0.0)
                 continue;
+            residual -= (better_e - e) * x.transpose();
             curves.emission.col(k) = better_e;
+            const Vector better_x = optimal_column(transposed, residual.transpose(), x, better_e);
+            if (better_x.maxCoeff() <= 0.0)
+                continue;
+            residual -= better_e * (better_x - x).transpose();
             curves.excitation.col(k) = better_x;
         }
     return target.chi_squared(curves.emission * curves.excitation.transpose());

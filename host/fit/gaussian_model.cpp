@@ -4,6 +4,7 @@
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 
 namespace reradiant {
 
@@ -74,6 +76,8 @@ public:
         options.num_threads = settings_.threads;
         options.logging_type = ceres::SILENT;
         options.min_lm_diagonal = 1e-9;
+        // Near the optimum a step changes the cost by less than its rounding.
+        options.use_nonmonotonic_steps = true;
         set_linear_algebra(options);
         ceres::Solver::Summary summary;
         ceres::Solve(options, &problem_, &summary);
@@ -155,12 +159,17 @@ Vector projected(const Vector& point, const NonNegativeModel& model) {
     return result;
 }
 
-/// Towards `target`, cut off at zero, as far as the cost falls; `from` when it never does.
+/// Relative change of a cost that is a sum of thousands of squares and may be rounding alone.
+constexpr double cost_rounding = 1e-14;
+/// KKT violation that still counts as convergence when rounding keeps the cost from falling.
+constexpr double kkt_of_rounding = 1e-6;
+
+/// Towards `target`, cut off at zero, as far as the cost does not rise; `from` when it always does.
 Vector projected_step(Minimisation& minimisation, const NonNegativeModel& model, const Vector& from,
                       const Vector& target, double cost_now) {
     for (double share = 1.0; share > 1e-7; share *= 0.3) {
         const Vector trial = projected(from + share * (target - from), model);
-        if (minimisation.cost_at(trial) < cost_now)
+        if (minimisation.cost_at(trial) <= cost_now * (1.0 + cost_rounding))
             return trial;
     }
     return from;
@@ -183,6 +192,24 @@ void record(SolveTrace& trace, const ceres::Solver::Summary& summary, double sec
         trace.seconds.push_back(seconds_before + summary.iterations[k].cumulative_time_in_seconds);
         ++trace.iterations;
     }
+}
+
+/// Why a minimisation ends at a point, or nothing. Fills trace.converged.
+std::optional<std::string> reason_to_stop(SolveTrace& trace, const SolverSettings& settings,
+                                          bool is_stuck, double seconds) {
+    trace.converged = trace.kkt <= settings.kkt_tolerance;
+    if (trace.converged)
+        return fmt::format("the KKT conditions hold to {:.1e}", settings.kkt_tolerance);
+    if (is_stuck) {
+        trace.converged = trace.kkt <= kkt_of_rounding;
+        return fmt::format("no step lowers the cost any more; the KKT conditions hold to {:.1e}",
+                           trace.kkt);
+    }
+    if (seconds > settings.most_seconds)
+        return "the limit of time was reached";
+    if (trace.iterations >= settings.most_iterations)
+        return "the limit of iterations was reached";
+    return std::nullopt;
 }
 
 } // namespace
@@ -210,27 +237,26 @@ SolveTrace minimise_non_negative(const NonNegativeModel& model, Vector& paramete
     parameters = projected(parameters, model);
     Minimisation minimisation(model, parameters, settings);
     SolveTrace trace;
-    trace.stop_reason = "the limit of iterations was reached";
-    double cost = 0.0;
+    double cost = 0.0, last_cost = std::numeric_limits<double>::infinity();
+    double last_kkt = std::numeric_limits<double>::infinity();
     Vector gradient, curvature;
-    for (int round = 0; trace.iterations < settings.most_iterations; ++round) {
+    for (;;) {
         if (!minimisation.linearise(cost, gradient, curvature)) {
-            trace.stop_reason = "the cost is not finite";
-            break;
+            trace.stop_reason = "the cost or its slope is not finite";
+            return trace;
         }
         trace.cost.push_back(cost);
         trace.seconds.push_back(seconds_since(start));
         trace.kkt = kkt_violation(parameters, gradient, curvature, model);
-        if (trace.kkt <= settings.kkt_tolerance) {
-            trace.converged = true;
-            trace.stop_reason =
-                fmt::format("the KKT conditions hold to {:.1e}", settings.kkt_tolerance);
-            break;
+        const bool is_stuck =
+            cost >= last_cost * (1.0 - cost_rounding) && trace.kkt > 0.5 * last_kkt;
+        if (const auto reason =
+                reason_to_stop(trace, settings, is_stuck, seconds_since(begin))) {
+            trace.stop_reason = *reason;
+            return trace;
         }
-        if (seconds_since(begin) > settings.most_seconds) {
-            trace.stop_reason = "the limit of time was reached";
-            break;
-        }
+        last_cost = cost;
+        last_kkt = trace.kkt;
         const ceres::Solver::Summary summary = minimisation.solve(
             held_at_zero(parameters, gradient, curvature, model),
             std::min(settings.steps_per_round, settings.most_iterations - trace.iterations),
@@ -238,19 +264,11 @@ SolveTrace minimise_non_negative(const NonNegativeModel& model, Vector& paramete
         record(trace, summary, seconds_since(start) - summary.total_time_in_seconds);
         if (summary.termination_type == ceres::FAILURE) {
             trace.stop_reason = "Ceres failed: " + summary.message;
-            break;
+            return trace;
         }
-        const Vector next =
-            projected_step(minimisation, model, parameters, minimisation.values(), cost);
-        minimisation.values() = next;
-        if (next == parameters) {
-            trace.stop_reason = "no step lowers the cost any more";
-            break;
-        }
-        parameters = next;
+        parameters = projected_step(minimisation, model, parameters, minimisation.values(), cost);
+        minimisation.values() = parameters;
     }
-    minimisation.values() = parameters;
-    return trace;
 }
 
 } // namespace reradiant

@@ -35,9 +35,13 @@ std::vector<double> AngularGrid::invariants() const {
 
 AngularGrid make_angular_grid(double ior, double critical, int cells) {
     AngularGrid grid{ior, critical, {}};
+    const auto share = [](int j, int count) { // 0 to 1, crowded at both ends
+        const double s = std::sin(0.5 * std::numbers::pi * j / count);
+        return s * s;
+    };
     if (critical <= 0.0) {
         for (int j = 0; j <= cells; ++j) {
-            grid.edges.push_back(std::pow(static_cast<double>(j) / cells, 1.5));
+            grid.edges.push_back(share(j, cells));
         }
         return grid;
     }
@@ -46,8 +50,7 @@ AngularGrid make_angular_grid(double ior, double critical, int cells) {
         grid.edges.push_back(critical * std::sin(0.5 * std::numbers::pi * j / lower));
     }
     for (int j = 0; j <= upper; ++j) {
-        grid.edges.push_back(critical +
-                             (1.0 - critical) * std::pow(static_cast<double>(j) / upper, 1.5));
+        grid.edges.push_back(critical + (1.0 - critical) * share(j, upper));
     }
     grid.edges.back() = 1.0;
     return grid;

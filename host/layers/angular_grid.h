@@ -23,7 +23,9 @@ struct AngularGrid {
 
 /// Grid on the thinner side (critical = 0) or on the denser side of an interface. Half of the
 /// denser side's cells lie on each side of its critical cosine and crowd towards it, because
-/// transmission starts there as a square root.
+/// transmission starts there as a square root. They crowd towards the normal too: light refracted
+/// into a narrow lobe about it fills a part of its cell only, and where the slab absorbs, a cell of
+/// 0.02 in the cosine makes an error of 0.4 % at depth 1.
 AngularGrid make_angular_grid(double ior, double critical, int cells);
 
 /// Least-squares fit of a smooth function of the cosine to its means over the cells of a grid:

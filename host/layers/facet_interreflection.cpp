@@ -1,6 +1,7 @@
 #include "host/layers/facet_interreflection.h"
 
 #include "host/layers/angular_system.h"
+#include "host/layers/facet_orders.h"
 #include "host/layers/facet_reflectance.h"
 #include "host/layers/interface_operator.h"
 #include "host/layers/quadrature.h"
@@ -20,19 +21,37 @@ double cosine_mean(const Function& f) {
     return integrate_sin2(0.0, 1.0, 24, [&](double c) { return 2.0 * c * f(c); });
 }
 
-/// Opaque facets whose reflectance is that of `reflector`.
-template <typename Reflector>
-CosineTable opaque_interreflection(const Reflector& reflector, double ior_above) {
-    const CosineTable albedo = lobe_albedo({reflector.distribution, reflector.alpha});
-    const double facets = cosine_mean(albedo);
-    const double fresnel =
-        cosine_mean([&](double c) { return facet_reflectance(reflector, ior_above, c); });
-    const double scale = fresnel * fresnel * facets / (1.0 - fresnel * (1.0 - facets));
+/// Kulla and Conty 2017, with both meetings after the first counted at the mean reflectance: (1 -
+/// E) F^2 Em / (1 - F (1 - Em)), Em the cosine-weighted mean of E.
+std::vector<double> cavity_interreflection(const CosineTable& albedo, double reflectance) {
+    const double mean = cosine_mean(albedo);
+    const double scale = reflectance * reflectance * mean / (1.0 - reflectance * (1.0 - mean));
     std::vector<double> values;
     for (const double e : albedo.values()) {
         values.push_back(scale * std::max(1.0 - e, 0.0));
     }
-    return CosineTable(std::move(values));
+    return values;
+}
+
+/// Every meeting at the mean reflectance.
+std::vector<double> smith_interreflection(const Eigen::MatrixXd& orders, double reflectance) {
+    Eigen::VectorXd powers(orders.cols());
+    for (Eigen::Index k = 0; k < powers.size(); ++k) {
+        powers(k) = std::pow(reflectance, static_cast<double>(k + 2));
+    }
+    const Eigen::VectorXd values = orders * powers;
+    return {values.data(), values.data() + values.size()};
+}
+
+/// Opaque facets whose reflectance is that of `reflector`.
+template <typename Reflector>
+CosineTable opaque_interreflection(const Reflector& reflector, double ior_above) {
+    const AddingTransport::Lobe lobe{reflector.distribution, reflector.alpha};
+    const double mean =
+        cosine_mean([&](double c) { return facet_reflectance(reflector, ior_above, c); });
+    return CosineTable(lobe.distribution == Distribution::Blinn
+                           ? cavity_interreflection(lobe_albedo(lobe), mean)
+                           : smith_interreflection(*facet_orders(lobe), mean));
 }
 
 /// Mean share of the lobe over each cell of the denser side, which operators do not keep.

@@ -12,10 +12,10 @@ namespace reradiant {
 /// a wavelength) and counts as a mirror of its facets' reflectance, like a conductor.
 CosineTable facet_interreflection(const LayerValues& layer, double ior_above);
 
-/// The same of a conductor: (1 - E(c)) Fm^2 Em / (1 - Fm (1 - Em)), E the albedo of the lobe
-/// without Fresnel, Em and Fm the cosine-weighted means of E and of the reflectance. Everything is
-/// sent back where the facets reflect everything (Kulla and Conty 2017, with both meetings after
-/// the first counted at the mean reflectance).
+/// The same of a conductor, whose facets count at their cosine-weighted mean reflectance at every
+/// meeting: over the orders of a walk between them (facet_orders.h), or, for blinn, whose
+/// V-cavities have no walk, after Kulla and Conty 2017. Everything is sent back where facets
+/// reflect all.
 CosineTable facet_interreflection(const ConductorValues& conductor, double ior_above);
 
 } // namespace reradiant

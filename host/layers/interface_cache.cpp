@@ -20,7 +20,7 @@ namespace reradiant {
 namespace {
 
 /// Raise when the numbers or the layout of a stored operator change.
-constexpr std::uint32_t format_version = 1;
+constexpr std::uint32_t format_version = 2;
 
 /// IOR ratio in units of 1e-4, distribution, scattering, bits of alpha.
 using OperatorKey = std::tuple<long, int, int, std::uint64_t>;

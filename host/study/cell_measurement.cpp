@@ -155,6 +155,7 @@ CellMeasurement measure_cell(const Material& material, const StudyMeasuring& mea
     CellMeasurement cell;
     MeasureRequest request;
     request.model = measuring.model;
+    request.samples = measuring.samples;
     request.theta_i_deg = measuring.theta_i_deg;
     measure_hemispherical(material, request, cell);
 

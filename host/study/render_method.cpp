@@ -28,7 +28,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 }
 
 [[noreturn]] void refuse(const std::string& method, const std::string& why) {
-    throw_input_error({}, fmt::format("--methods: '{}' {}", method, why), remedy);
+    throw std::invalid_argument(fmt::format("'{}' {}; {}", method, why, remedy));
 }
 
 bool is_comb(const std::string& part) {
@@ -78,14 +78,18 @@ RenderMethod parse_method(const std::string& text) {
 
 std::vector<RenderMethod> parse_methods(const std::string& list) {
     std::vector<RenderMethod> methods;
-    for (const std::string& text : split(list, ',')) {
-        RenderMethod method = parse_method(text);
-        const bool known = std::any_of(methods.begin(), methods.end(), [&](const auto& other) {
-            return other.name == method.name;
-        });
-        if (known)
-            refuse(text, "is named twice");
-        methods.push_back(std::move(method));
+    try {
+        for (const std::string& text : split(list, ',')) {
+            RenderMethod method = parse_method(text);
+            const bool known = std::any_of(methods.begin(), methods.end(), [&](const auto& other) {
+                return other.name == method.name;
+            });
+            if (known)
+                refuse(text, "is named twice");
+            methods.push_back(std::move(method));
+        }
+    } catch (const std::invalid_argument& error) {
+        throw_input_error({}, fmt::format("--methods: {}", error.what()));
     }
     return methods;
 }

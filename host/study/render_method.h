@@ -17,10 +17,11 @@ struct RenderMethod {
 };
 
 /// A model, a wavelength sampling, or both joined by a plus: "adding", "comb:16",
-/// "weidlich-wilkie+comb". Input Error that names the part that is not known.
+/// "weidlich-wilkie+comb". std::invalid_argument says which part is not known, and what is.
 RenderMethod parse_method(const std::string& text);
 
-/// Methods separated by commas. Input Error for an empty list and for one that is named twice.
+/// Methods of --methods, separated by commas. Input Error for one that is not known, for an empty
+/// list and for one that is named twice.
 std::vector<RenderMethod> parse_methods(const std::string& list);
 
 } // namespace reradiant

@@ -48,8 +48,8 @@ std::string identity_of(const Study& study, const std::vector<ChosenValue>& valu
         text << fmt::format(" render {} {} {} {}", r->samples, static_cast<int>(r->method.model),
                             r->method.comb_count, r->exposure_ev);
     if (const auto& m = study.measuring)
-        text << fmt::format(" measure {} {} {} {} {}", m->theta_i_deg, m->theta_o_deg, m->phi_deg,
-                            m->illuminants, static_cast<int>(m->model));
+        text << fmt::format(" measure {} {} {} {} {} {}", m->samples, m->theta_i_deg,
+                            m->theta_o_deg, m->phi_deg, m->illuminants, static_cast<int>(m->model));
     Sha256 digest;
     digest.update(text.str());
     return digest.hex();

@@ -47,7 +47,12 @@ struct StudyMeasuring {
     std::vector<double> theta_i_deg{45.0}, theta_o_deg{0.0}, phi_deg{0.0};
     std::vector<std::string> illuminants{"D65"};
     Model model = Model::Auto;
+    long samples = 0; ///< of the walk: paths for each theta_i, 0: its default
+    bool theta_i_given = false, illuminants_given = false; ///< by the file, not by default
 };
+
+/// More combinations than this are refused.
+inline constexpr std::size_t most_study_cells = 10000;
 
 struct Study {
     std::filesystem::path file;

@@ -18,12 +18,12 @@ h1{font-size:1.5em;margin:.2em 0}
   padding:.5em 0;border-bottom:1px solid #ccc;z-index:1}
 #controls input[type=range]{width:24em;max-width:70vw;vertical-align:middle}
 #panels{display:flex;flex-wrap:wrap;gap:1.5em}
-.panel{border:1px solid #ccc;padding:.8em;width:420px}
+.panel{border:1px solid #ccc;padding:.8em;width:460px;max-width:90vw}
 .panel h2{font-size:1em;margin:0 0 .5em}
 .panel canvas{display:block;width:100%;touch-action:none;cursor:crosshair}
-.panel canvas.image{image-rendering:pixelated;background:#000}
+.panel canvas.image{image-rendering:pixelated;background:#000;width:75%}
 .panel svg{max-width:100%;height:auto}
-.panel table{border-collapse:collapse;font-size:.85em}
+.panel table{display:block;overflow-x:auto;border-collapse:collapse;font-size:.78em}
 .panel th,.panel td{padding:.1em .5em;text-align:right;border-bottom:1px solid #ddd}
 .caption{font-size:.85em;color:#555;margin:.6em 0 .1em}
 .value{font-size:.9em;min-height:1.4em;font-variant-numeric:tabular-nums}

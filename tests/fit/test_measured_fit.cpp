@@ -66,4 +66,4 @@ TEST_P(MeasuredFit, FactorsMeetTheBars) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bfc450, MeasuredFit, ::testing::ValuesIn(bars),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& instance) { return std::string(instance.param.name); });

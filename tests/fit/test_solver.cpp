@@ -1,6 +1,7 @@
 #include "host/fit/error_bands.h"
 #include "host/fit/non_negative_solver.h"
 
+#include <Eigen/Dense>
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
 #include <gtest/gtest.h>

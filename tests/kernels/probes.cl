@@ -108,6 +108,11 @@ __kernel void probe_descend(__global const float* in, __global float* out, uint 
     out[3 * i + 2] = descent.wo.z;
 }
 
+__kernel void probe_phase(__global const float* in, __global float* out, uint count) {
+    ITEM;
+    out[i] = layer_stack_phase(in[2 * i], in[2 * i + 1]);
+}
+
 // in, out: LANES values an item; factors: [2 * rank][LANES]
 __kernel void probe_factored(__global const float* in, __global float* out, uint count,
                              __global const float* factors, uint rank) {

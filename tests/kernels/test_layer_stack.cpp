@@ -32,6 +32,27 @@ TEST(KernelLayerStack, ModelAMatchesDouble) {
     }
 }
 
+TEST(KernelLayerStack, Case12HenyeyGreensteinKeepsItsDigitsNearOne) {
+    Source source(19);
+    std::vector<float> input;
+    constexpr std::size_t count = 20000;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double g = 1.0 - std::pow(10.0, source.uniform(-4.5, 0.3)); // -1 .. 0.99997
+        const double bend = std::pow(10.0, source.uniform(-6.0, 0.3));    // 1 - cos
+        input.push_back(static_cast<float>(std::max(g, -0.999)));
+        input.push_back(static_cast<float>(i % 16 == 0 ? 1.0 : 1.0 - bend));
+    }
+    const std::vector<float> found = run_probe("probe_phase", input, count, 1);
+    for (std::size_t i = 0; i < count; ++i) {
+        const long double g = input[2 * i], c = input[2 * i + 1];
+        const long double expected =
+            (1 - g * g) / (12.566370614359172954L * std::pow(1 + g * g - 2 * g * c, 1.5L));
+        // 1 - g, 1 - cos exact; some ten roundings and the divisions of OpenCL (2.5 ULP)
+        EXPECT_LT(relative_difference(found[i], static_cast<double>(expected), 0.0), 1e-6)
+            << input[2 * i] << ", " << input[2 * i + 1];
+    }
+}
+
 kernels::LayerStackView view(const std::vector<LobeRecord>& lobes) {
     kernels::LayerStackView stack{};
     stack.record.has_top_lobe = 1;

@@ -53,6 +53,15 @@ TEST(Furnace, WhiteUnderRoughAndSmoothLayersIsWhite) {
     expect_white(material({layer(1.3, 0.3), layer(1.6, 0.2)}, 1.0), "rough over rough");
 }
 
+TEST(Furnace, WhiteScatteringSlabOverWhiteIsWhite) {
+    Layer slab = layer(1.4);
+    slab.scattering_coefficient = Spectrum::constant(2.0);
+    slab.anisotropy = 0.6;
+    expect_white(material({slab}, 1.0), "scattering slab");
+    slab.alpha = 0.3;
+    expect_white(material({layer(1.6), slab}, 1.0), "smooth over rough over scattering");
+}
+
 /// Radiance of a re-radiating plane in a furnace of radiance 1: reciprocity turns the integral
 /// over the incident directions into 2 int c T dc = n^2 (1 - r).
 double analytic_furnace(const Material& m, const Eigen::MatrixXd& matrix, int band, double c) {

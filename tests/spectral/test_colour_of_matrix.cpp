@@ -82,14 +82,14 @@ TEST(ColourOfMatrix, WhitenessAgreesWithColourScience) {
 }
 
 // Against the weights that colour-science 0.4.7 makes by ASTM E2022 for the same 10 nm bands, from
-// illuminants interpolated linearly to 1 nm as CIE 15 asks. The illuminants of FL and LED end at
-// 780 nm, A and D65 are cut there: the ranges are the same.
+// its illuminants interpolated linearly to 1 nm as CIE 15 asks, A from its formula (our table of A
+// has six digits, hence its tolerance). Both sums run from 360 to 780 nm.
 TEST(ColourOfMatrix, E308AgreesWithColourScienceForReflection) {
-    const std::array<Xyz, 4> expected = {Xyz{62.207183, 34.720408, 1.453849},
+    const std::array<Xyz, 4> expected = {Xyz{62.208689, 34.721118, 1.453616},
                                          {40.74055, 24.734362, 4.379319},
                                          {42.399267, 27.812214, 2.724414},
                                          {48.048764, 29.187569, 2.734783}};
-    const std::array<Xyz, 4> white = {Xyz{109.848631, 100, 35.590955},
+    const std::array<Xyz, 4> white = {Xyz{109.849568, 100, 35.585103},
                                       {95.046857, 100, 108.882973},
                                       {99.14607, 100, 67.314818},
                                       {100.861889, 100, 67.63394}};
@@ -97,8 +97,9 @@ TEST(ColourOfMatrix, E308AgreesWithColourScienceForReflection) {
     const ReradiationMatrix paint = reflecting([&](double nm) { return diagonal(nm); });
     for (std::size_t k = 0; k < 4; ++k) {
         const MatrixColour colour = colour_under(paint, lamps[k], ColourSum::E308);
-        expect_near(colour.xyz, expected[k], 2e-6, lamps[k]);
-        expect_near(colour.white, white[k], 2e-6, lamps[k]);
+        const double tolerance = k == 0 ? 5e-5 : 2e-6;
+        expect_near(colour.xyz, expected[k], tolerance, lamps[k]);
+        expect_near(colour.white, white[k], tolerance, lamps[k]);
     }
 }
 

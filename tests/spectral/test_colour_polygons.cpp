@@ -1,5 +1,8 @@
+#include "host/error.h"
 #include "host/spectral/colour_polygons.h"
 #include "tests/spectral/scratch_folder.h"
+
+#include <cmath>
 
 using namespace reradiant;
 

@@ -31,6 +31,16 @@ protected:
                 file_bytes(errors)};
     }
 
+    /// Starts the program, asks it to end as soon as `file` is there, and returns its exit code.
+    int run_until(const std::string& file, const std::string& arguments) const {
+        const std::string command =
+            "cd '" + (folder / "").string() + "' && { '" RERADIANT_PROGRAM "' " + arguments +
+            " --quiet & program=$!; until test -e '" + file +
+            "' || ! kill -0 $program; do sleep 0.05; done; kill -TERM $program; wait $program; }";
+        const int status = std::system(command.c_str());
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+
     /// The run must fail with this code, say `place` on standard error, and add no file.
     void expect_failure(int exit_code, const std::string& arguments, const std::string& place,
                         const std::string& environment = "") const {
