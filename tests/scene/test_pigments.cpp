@@ -96,7 +96,7 @@ TEST_F(Pigments, WrongKeysAreRefusedAtTheirPlace) {
                  "at least 0");
     expect_error("pigments = [ { absorption = 0, scattering = 0 } ]\n", 4, 1,
                  "neither absorbs nor scatters");
-    expect_error(WHITE + replaced(DYE, "0.8", "1.1"), 5, 118, "at most 1");
+    expect_error(WHITE + replaced(DYE, "0.8", "1.1"), 5, 123, "at most 1");
     expect_error(WHITE + "dyes = [ { absorption = 1, emission = 0 } ]\n", 5, 28,
                  "emission is zero");
 }

@@ -110,7 +110,7 @@ const BadScene BAD_SCENES[] = {
     {"FolderForFile", "radiance = 1", "radiance = { file = \".\" }", 9, 14, "cannot open"},
     // Presets.
     {"UnknownPreset", "[material.substrate]\ntype = \"lambert\"\nreflectance = 0.5",
-     "preset = \"none\"", 12, 1, "there are: fluorescent-orange-bare"},
+     "preset = \"none\"", 12, 1, "there are: acrylic-lacquer"},
     // Syntax.
     {"Syntax", "height = 4", "height = = 4", 3, 10, "not valid TOML"},
     {"DuplicateKey", "height = 4", "height = 4\nheight = 4", 4, 10, "not valid TOML"},

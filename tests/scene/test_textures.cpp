@@ -58,7 +58,7 @@ TEST_F(Textures, ATexturedMaterialHasAVariantForEveryLevel) {
 
 TEST_F(Textures, TheLastTextureRunsFastest) {
     const Scene read = load_scene(
-        scene("layer = [ { ior = 1.5, thickness = { texture = \"squares\", low = 1, high = 2 },\n"
+        scene("layer = [ { ior = 1.5, thickness = { texture = \"squares\", low = 1, high = 2 }, "
               "alpha = { texture = \"clouds\", low = 0, high = 0.4 } } ]\n" +
                   lambert("0.5"),
               CHECKER + NOISE));
@@ -133,13 +133,13 @@ TEST_F(Textures, AnImageAsAReflectanceKeepsItsColours) {
 }
 
 TEST_F(Textures, ReferencesThatMeanNothingAreRefused) {
-    expect_error(lambert("{ texture = \"cloud\" }"), NOISE, 12, 53,
+    expect_error(lambert("{ texture = \"cloud\" }"), NOISE, 12, 49,
                  "no texture is called \"cloud\"; there are: clouds");
-    expect_error(lambert("{ texture = \"clouds\", lo = 0.1 }"), NOISE, 12, 75,
+    expect_error(lambert("{ texture = \"clouds\", lo = 0.1 }"), NOISE, 12, 69,
                  "did you mean \"low\"?");
     expect_error(lambert("{ texture = \"clouds\", high = { texture = \"clouds\" } }"), NOISE, 12,
-                 84, "cannot be textures");
-    expect_error(lambert("0.5"), NOISE + CHECKER + NOISE, 25, 1, "two textures are called");
+                 78, "cannot be textures");
+    expect_error(lambert("0.5"), NOISE + CHECKER + NOISE, 26, 1, "two textures are called");
     const auto light =
         write("scene.toml",
               replaced(SMALL_SCENE, "radiance = 1", "radiance = { texture = \"clouds\" }") + NOISE);
@@ -148,7 +148,7 @@ TEST_F(Textures, ReferencesThatMeanNothingAreRefused) {
 }
 
 TEST_F(Textures, EndsOutOfRangeAreRefused) {
-    expect_error(lambert("{ texture = \"clouds\", high = 1.2 }"), NOISE, 12, 41, "at most 1");
+    expect_error(lambert("{ texture = \"clouds\", high = 1.2 }"), NOISE, 12, 33, "at most 1");
     expect_error("layer = [ { ior = 1.5, alpha = { texture = \"clouds\", high = 2 } } ]\n" +
                      lambert("0.5"),
                  NOISE, 12, 24, "alpha reaches 2");
@@ -196,7 +196,7 @@ TEST_F(Textures, NormalsNeedATextureThatHasThem) {
                  "no texture is called");
     const std::string map =
         "[[texture]]\nname = \"bumps\"\ntype = \"image\"\nfile = \"two.png\"\nnormal_map = true\n";
-    expect_error(lambert("{ texture = \"bumps\" }"), map, 12, 53, "is a normal map");
+    expect_error(lambert("{ texture = \"bumps\" }"), map, 12, 49, "is a normal map");
     expect_error("mix = { with = \"sugar\", weight = { texture = \"bumps\" } }\n" + lambert("0.5"),
                  map, 12, 25, "is a normal map");
     const Scene read =
