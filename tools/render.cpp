@@ -254,7 +254,8 @@ void add_stopping_options(CLI::App& app, RenderCommand& command) {
 }
 
 void add_sampling_options(CLI::App& app, RenderCommand& command) {
-    app.add_option("--model", command.model, "auto, adding or weidlich-wilkie for every material");
+    app.add_option("--model", command.model,
+                   "auto, adding, weidlich-wilkie or walk for every material");
     app.add_option("--wavelengths", command.wavelengths, "comb or comb:N, N wavelengths a path");
     app.add_option("--comb-phase", command.phase,
                    "random: anywhere in a band; centre: at the band centres only")

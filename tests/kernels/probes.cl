@@ -12,6 +12,7 @@
 #include "kernels/sampling.h"
 #include "kernels/shared.h"
 #include "kernels/table.h"
+#include "kernels/walk_facets.h"
 
 #define ITEM                                                                                       \
     const uint i = (uint)get_global_id(0);                                                         \
@@ -138,4 +139,18 @@ __kernel void probe_dense(__global const float* in, __global float* out, uint co
     reradiation_dense(down, up, matrix);
     for (uint c = 0u; c < CHUNKS; ++c)
         vstore16(up[c], c, out + i * LANES);
+}
+
+// in: distribution, alpha, eta, v, w, height, u; out: visible area, densities of reflection and
+// refraction, probability of escape, next height
+__kernel void probe_walk_facets(__global const float* in, __global float* out, uint count) {
+    ITEM;
+    __global const float* p = in + 11 * i;
+    const WalkSurface surface = {(int)p[0], p[1], p[2], 1, 0};
+    const Vec3 v = vec3(p[3], p[4], p[5]), w = vec3(p[6], p[7], p[8]);
+    out[5 * i] = walk_visible_area(surface, v);
+    out[5 * i + 1] = walk_reflection_density(surface, v, w);
+    out[5 * i + 2] = walk_refraction_density(surface, v, w);
+    out[5 * i + 3] = walk_escape(surface, w, p[9]);
+    out[5 * i + 4] = walk_next_height(surface, w, p[9], p[10]);
 }
