@@ -206,14 +206,24 @@ private:
                                          compare_images(image(), result_.reference.image),
                                          {state.relmse, state.relmse_low, state.relmse_high}});
         };
-        RenderResult rendered = render_until(method_options(options_, method, result_.seed), share,
-                                             share_of_all, method.name, observe);
-        result.curve.setup_seconds = rendered.setup_seconds;
-        result.curve.build_seconds = rendered.build_seconds;
+        const RenderOptions render = method_options(options_, method, result_.seed);
+        const double setup_and_pass = warm_up(render, result.curve);
+        RenderResult rendered = render_until(render, share, share_of_all, method.name, observe);
+        result.curve.setup_seconds =
+            std::max(0.0, setup_and_pass - rendered.passes.front().seconds);
         for (CurveRow& row : result.curve.rows)
-            row.seconds_with_setup = row.seconds + rendered.setup_seconds + rendered.build_seconds;
+            row.seconds_with_setup = row.seconds + result.curve.setup_seconds;
         result.image = std::move(rendered.image);
         return result;
+    }
+
+    /// Renders one sample and returns the seconds it took. Drivers build kernels when they are
+    /// first run, so that without this the first method to need one would pay for it as rendering.
+    double warm_up(RenderOptions render, ErrorCurve& curve) const {
+        render.samples = 1;
+        const RenderResult warm = reradiant::render(scene_, device_, render);
+        curve.build_seconds = warm.build_seconds;
+        return warm.total_seconds;
     }
 
     const Scene& scene_;

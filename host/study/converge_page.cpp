@@ -59,7 +59,7 @@ std::vector<std::string> table_row(const ErrorCurve& curve, const RelmseEstimate
     const CurveRow& last = curve.rows.back();
     return {curve.method.name,
             number(last.seconds),
-            number(curve.setup_seconds + curve.build_seconds),
+            number(curve.setup_seconds),
             std::to_string(last.samples),
             number(last.error.relmse),
             number(last.error.ciede2000),

@@ -21,7 +21,8 @@ struct CurveRow {
 
 struct ErrorCurve {
     RenderMethod method;
-    double setup_seconds = 0.0, build_seconds = 0.0;
+    double setup_seconds = 0.0; ///< tables and kernels, until light is traced
+    double build_seconds = 0.0; ///< of them, compiling or loading kernels
     std::vector<CurveRow> rows; ///< at geometric steps of time, ascending
 };
 

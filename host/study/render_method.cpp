@@ -46,6 +46,14 @@ int comb_count(const std::string& method, const std::string& part) {
     return count;
 }
 
+Model model_of(const std::string& method, const std::string& part) {
+    try {
+        return model_from_name(part);
+    } catch (const std::invalid_argument&) {
+        refuse(method, fmt::format("holds the unknown part '{}'", part));
+    }
+}
+
 } // namespace
 
 std::string RenderMethod::file_stem() const {
@@ -59,19 +67,14 @@ RenderMethod parse_method(const std::string& text) {
     bool has_model = false, has_comb = false;
     for (const std::string& part : split(text, '+')) {
         const bool comb = is_comb(part);
+        if (comb)
+            method.comb_count = comb_count(text, part);
+        else
+            method.model = model_of(text, part);
         bool& given = comb ? has_comb : has_model;
         if (given)
             refuse(text, comb ? "names two wavelength samplings" : "names two models");
         given = true;
-        if (comb) {
-            method.comb_count = comb_count(text, part);
-            continue;
-        }
-        try {
-            method.model = model_from_name(part);
-        } catch (const std::invalid_argument&) {
-            refuse(text, fmt::format("holds the unknown part '{}'", part));
-        }
     }
     return method;
 }

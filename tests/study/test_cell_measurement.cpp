@@ -42,10 +42,10 @@ TEST(CellMeasurement, PerfectDiffuserHasTheWhiteOfTheLamp) {
 TEST(CellMeasurement, QuantumYieldOfABareDyeIsItsOwn) {
     Material material = bare(0.0);
     material.substrate.fluorophores = {
-        {Spectrum::table({300, 340, 341, 460, 461, 780}, {0, 0, 0.6, 0.6, 0, 0}),
+        {Spectrum::table({300, 344.9, 345, 455, 455.1, 780}, {0, 0, 0.6, 0.6, 0, 0}),
          Spectrum::gaussian(580, 15, 1.0), 0.7}};
     material.substrate.reflectance =
-        Spectrum::table({300, 340, 341, 460, 461, 780}, {1, 1, 0.4, 0.4, 1, 1});
+        Spectrum::table({300, 344.9, 345, 455, 455.1, 780}, {1, 1, 0.4, 0.4, 1, 1});
     const CellMeasurement cell = measure_cell(material, {}, {lamp("D65")});
     EXPECT_NEAR(cell.colours[0].quantum_yield, 0.7, 0.014);
     EXPECT_GT(*std::max_element(cell.colours[0].beta_t.begin(), cell.colours[0].beta_t.end()), 1.2)
@@ -54,9 +54,9 @@ TEST(CellMeasurement, QuantumYieldOfABareDyeIsItsOwn) {
 
 TEST(CellMeasurement, BandsWithoutLightHaveNoRadianceFactor) {
     const CellMeasurement cell =
-        measure_cell(bare(0.5), {}, {{"line", Spectrum::line(405, 2, 10.0)}});
+        measure_cell(bare(0.5), {}, {{"line", Spectrum::line(410, 2, 10.0)}});
     const auto& beta = cell.colours[0].beta_t;
-    const int lit = cell.bands.band_of(405);
+    const int lit = cell.bands.band_of(410);
     for (int band = 0; band < cell.bands.count; ++band)
         if (band == lit)
             EXPECT_NEAR(beta[static_cast<std::size_t>(band)], 0.5, 1e-9);
