@@ -141,12 +141,6 @@ std::vector<int> FactorModel::block_sizes() const {
     return std::vector<int>(static_cast<std::size_t>(emission_.size() + excitation_.size()), rank_);
 }
 
-LinearAlgebra FactorModel::linear_algebra() const {
-    if (emission_.is_per_band() && excitation_.is_per_band() && !penalty_.is_active())
-        return {LinearAlgebra::Type::DenseSchur, static_cast<std::size_t>(emission_.size())};
-    return {LinearAlgebra::Type::DenseNormal};
-}
-
 void FactorModel::add_residuals(ceres::Problem& problem, const std::vector<double*>& blocks) const {
     const auto first_excitation = static_cast<std::size_t>(emission_.size());
     const auto append = [&](std::vector<double*>& list, const Support& support, std::size_t first) {

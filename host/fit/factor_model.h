@@ -18,7 +18,6 @@ public:
 
     std::vector<int> block_sizes() const override;
     void add_residuals(ceres::Problem& problem, const std::vector<double*>& blocks) const override;
-    LinearAlgebra linear_algebra() const override;
 
     FactorCurves curves(const Eigen::VectorXd& parameters) const override;
     Eigen::MatrixXd matrix(const Eigen::VectorXd& parameters) const override;

@@ -1,17 +1,14 @@
 #include "host/fit/non_negative_solver.h"
 
+#include "host/fit/bounded_quadratic.h"
+
 #include <ceres/crs_matrix.h>
-#include <ceres/manifold.h>
-#include <ceres/ordered_groups.h>
 #include <ceres/problem.h>
-#include <ceres/solver.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <optional>
 
 namespace reradiant {
 
@@ -20,240 +17,197 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Clock = std::chrono::steady_clock;
 
-constexpr double largest_radius = 1e9; ///< damping of at least 1e-9 of a column's square length
-
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The Ceres problem of a model with its parameters in one vector.
-class Minimisation {
+/// The Ceres problem of a model with its parameters in one vector. Ceres evaluates residuals,
+/// losses and Jacobians.
+class Linearisation {
 public:
-    Minimisation(const NonNegativeModel& model, const Vector& start, const SolverSettings& settings)
-        : model_(model), settings_(settings), sizes_(model.block_sizes()), values_(start) {
+    Linearisation(const NonNegativeModel& model, const Vector& start,
+                  const SolverSettings& settings)
+        : values_(start) {
         double* next = values_.data();
-        for (const int size : sizes_) {
-            blocks_.push_back(next);
+        for (const int size : model.block_sizes()) {
+            options_.parameter_blocks.push_back(next);
             problem_.AddParameterBlock(next, size);
             next += size;
         }
-        model.add_residuals(problem_, blocks_);
+        options_.num_threads = settings.threads;
+        model.add_residuals(problem_, options_.parameter_blocks);
     }
 
     /// Cost at a point, infinite where a residual cannot be evaluated.
     double cost_at(const Vector& point) {
-        const Vector kept = values_;
         values_ = point;
-        free_all();
-        double cost = 0.0;
-        const bool good = problem_.Evaluate(evaluate_options(), &cost, nullptr, nullptr, nullptr);
-        values_ = kept;
-        return good && std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
+        double value = 0.0;
+        const bool good = problem_.Evaluate(options_, &value, nullptr, nullptr, nullptr);
+        return good && std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
     }
 
-    /// Cost, its gradient and the diagonal of J^T J at the current point; false where undefined.
-    bool linearise(double& cost, Vector& gradient, Vector& curvature) {
-        free_all();
+    double cost = 0.0;
+    Vector gradient, curvature;         ///< curvature: diagonal of `normal`
+    Eigen::SparseMatrix<double> normal; ///< J' J
+
+    /// Fills cost, gradient, curvature and normal; false where they are not defined.
+    bool linearise(const Vector& point) {
+        values_ = point;
         std::vector<double> slope;
-        ceres::CRSMatrix jacobian;
-        if (!problem_.Evaluate(evaluate_options(), &cost, nullptr, &slope, &jacobian))
+        ceres::CRSMatrix crs;
+        if (!problem_.Evaluate(options_, &cost, nullptr, &slope, &crs))
             return false;
         gradient = Eigen::Map<const Vector>(slope.data(), static_cast<Eigen::Index>(slope.size()));
-        curvature = Vector::Zero(gradient.size());
-        for (std::size_t k = 0; k < jacobian.values.size(); ++k)
-            curvature(jacobian.cols[k]) += jacobian.values[k] * jacobian.values[k];
+        const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> jacobian(
+            crs.num_rows, crs.num_cols, static_cast<Eigen::Index>(crs.values.size()),
+            crs.rows.data(), crs.cols.data(), crs.values.data());
+        const Eigen::SparseMatrix<double> columns(jacobian);
+        normal = columns.transpose() * columns;
+        curvature = normal.diagonal();
         return std::isfinite(cost) && gradient.allFinite();
     }
 
-    /// Unbounded minimisation over the parameters that are not held.
-    ceres::Solver::Summary solve(const std::vector<bool>& held, int steps, double seconds) {
-        hold(held);
-        ceres::Solver::Options options;
-        options.max_num_iterations = steps;
-        options.max_solver_time_in_seconds = seconds;
-        options.function_tolerance = 1e-16;
-        options.gradient_tolerance = 1e-14;
-        options.parameter_tolerance = 1e-14;
-        options.initial_trust_region_radius = radius_;
-        options.num_threads = settings_.threads;
-        options.logging_type = ceres::SILENT;
-        // Factors may be mixed at no cost: without this much damping Cholesky fails there.
-        options.max_trust_region_radius = largest_radius;
-        // Near the optimum a step changes the cost by less than its rounding.
-        options.use_nonmonotonic_steps = true;
-        set_linear_algebra(options);
-        ceres::Solver::Summary summary;
-        ceres::Solve(options, &problem_, &summary);
-        if (!summary.iterations.empty())
-            radius_ =
-                std::clamp(summary.iterations.back().trust_region_radius, 1.0, largest_radius);
-        free_all();
-        return summary;
-    }
-
-    Vector& values() { return values_; }
-
 private:
-    ceres::Problem::EvaluateOptions evaluate_options() const {
-        ceres::Problem::EvaluateOptions options;
-        options.parameter_blocks = blocks_;
-        options.num_threads = settings_.threads;
-        return options;
-    }
-
-    void free_all() {
-        for (double* block : held_blocks_) {
-            problem_.SetParameterBlockVariable(block);
-            problem_.SetManifold(block, nullptr);
-        }
-        held_blocks_.clear();
-    }
-
-    void hold(const std::vector<bool>& held) {
-        free_all();
-        std::size_t next = 0;
-        for (std::size_t b = 0; b < blocks_.size(); ++b) {
-            std::vector<int> constant;
-            for (int k = 0; k < sizes_[b]; ++k)
-                if (held[next++])
-                    constant.push_back(k);
-            if (constant.empty())
-                continue;
-            held_blocks_.push_back(blocks_[b]);
-            if (static_cast<int>(constant.size()) == sizes_[b])
-                problem_.SetParameterBlockConstant(blocks_[b]);
-            else
-                problem_.SetManifold(blocks_[b], new ceres::SubsetManifold(sizes_[b], constant));
-        }
-    }
-
-    void set_linear_algebra(ceres::Solver::Options& options) const {
-        const LinearAlgebra algebra = model_.linear_algebra();
-        switch (algebra.type) {
-        case LinearAlgebra::Type::DenseNormal:
-            options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-            break;
-        case LinearAlgebra::Type::SparseNormal:
-            options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-            break;
-        case LinearAlgebra::Type::DenseSchur:
-            options.linear_solver_type = ceres::DENSE_SCHUR;
-            options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-            for (std::size_t b = 0; b < blocks_.size(); ++b)
-                options.linear_solver_ordering->AddElementToGroup(
-                    blocks_[b], b < algebra.eliminated_blocks ? 0 : 1);
-            break;
-        }
-    }
-
-    const NonNegativeModel& model_;
-    const SolverSettings& settings_;
-    std::vector<int> sizes_;
     Vector values_;
     ceres::Problem problem_;
-    std::vector<double*> blocks_, held_blocks_;
-    double radius_ = 1e4;
+    ceres::Problem::EvaluateOptions options_;
 };
 
-Vector projected(const Vector& point, const NonNegativeModel& model) {
-    Vector result = point;
-    for (Eigen::Index k = 0; k < result.size(); ++k)
-        if (result(k) < 0.0 && !model.may_be_negative(k))
-            result(k) = 0.0;
-    return result;
-}
+/// Damping of the next step, relative to the curvatures (Nielsen 1999).
+class Damping {
+public:
+    double value() const { return value_; }
+    void accept(double gain) {
+        value_ *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain - 1.0, 3.0));
+        value_ = std::max(value_, least);
+        growth_ = 2.0;
+    }
+    void refuse() {
+        value_ *= growth_;
+        growth_ *= 2.0;
+    }
+    bool is_hopeless() const { return value_ > 1e12; }
+
+private:
+    /// Factors may be mixed at no cost: with less the normal equations are singular there.
+    static constexpr double least = 1e-10;
+    double value_ = 1e-3, growth_ = 2.0;
+};
 
 /// Relative change of a cost that is a sum of thousands of squares and may be rounding alone.
 constexpr double cost_rounding = 1e-14;
 /// KKT violation that still counts as convergence when rounding keeps the cost from falling.
 constexpr double kkt_of_rounding = 1e-6;
+/// Steps in a row that change nothing beyond rounding.
+constexpr int most_idle_steps = 8;
 
-/// Towards `target`, cut off at zero, as far as the cost does not rise; `from` when it always does.
-Vector projected_step(Minimisation& minimisation, const NonNegativeModel& model, const Vector& from,
-                      const Vector& target, double cost_now) {
-    for (double share = 1.0; share > 1e-7; share *= 0.3) {
-        const Vector trial = projected(from + share * (target - from), model);
-        if (minimisation.cost_at(trial) <= cost_now * (1.0 + cost_rounding))
-            return trial;
+std::vector<bool> bounded_parameters(const NonNegativeModel& model, Eigen::Index count) {
+    std::vector<bool> bounded(static_cast<std::size_t>(count));
+    for (std::size_t k = 0; k < bounded.size(); ++k)
+        bounded[k] = !model.may_be_negative(static_cast<Eigen::Index>(k));
+    return bounded;
+}
+
+/// One minimisation.
+class Descent {
+public:
+    Descent(const NonNegativeModel& model, Vector& parameters, const SolverSettings& settings,
+            Clock::time_point start)
+        : model_(model), parameters_(parameters), settings_(settings), start_(start),
+          begin_(Clock::now()), bounded_(bounded_parameters(model, parameters.size())),
+          here_(model, parameters, settings) {
+        for (Eigen::Index k = 0; k < parameters_.size(); ++k)
+            if (bounded_[static_cast<std::size_t>(k)])
+                parameters_(k) = std::max(parameters_(k), 0.0);
     }
-    return from;
-}
 
-std::vector<bool> held_at_zero(const Vector& values, const Vector& gradient,
-                               const Vector& curvature, const NonNegativeModel& model) {
-    std::vector<bool> held(static_cast<std::size_t>(values.size()));
-    for (Eigen::Index k = 0; k < values.size(); ++k)
-        // A parameter that nothing depends on stays where it is, too: no step could be computed.
-        held[static_cast<std::size_t>(k)] =
-            curvature(k) == 0.0 ||
-            (values(k) <= 0.0 && gradient(k) >= 0.0 && !model.may_be_negative(k));
-    return held;
-}
-
-void record(SolveTrace& trace, const ceres::Solver::Summary& summary, double seconds_before) {
-    for (std::size_t k = 1; k < summary.iterations.size(); ++k) {
-        trace.cost.push_back(summary.iterations[k].cost);
-        trace.seconds.push_back(seconds_before + summary.iterations[k].cumulative_time_in_seconds);
-        ++trace.iterations;
+    SolveTrace run() {
+        while (here_.linearise(parameters_)) {
+            note();
+            if (must_stop())
+                return trace_;
+            take_step();
+        }
+        trace_.converged = false;
+        trace_.stop_reason = "the cost or its slope is not finite";
+        return trace_;
     }
-}
 
-/// Why a minimisation ends at a point, or nothing. Fills trace.converged.
-std::optional<std::string> reason_to_stop(SolveTrace& trace, const SolverSettings& settings,
-                                          bool is_stuck, double seconds) {
-    trace.converged = trace.kkt <= settings.kkt_tolerance;
-    if (trace.converged)
-        return fmt::format("the KKT conditions hold to {:.1e}", settings.kkt_tolerance);
-    if (is_stuck) {
-        trace.converged = trace.kkt <= kkt_of_rounding;
-        return fmt::format("no step lowers the cost any more; the KKT conditions hold to {:.1e}",
-                           trace.kkt);
+private:
+    void note() {
+        trace_.cost.push_back(here_.cost);
+        trace_.seconds.push_back(seconds_since(start_));
+        trace_.kkt = kkt_violation(parameters_, here_.gradient, here_.curvature, model_);
     }
-    if (seconds > settings.most_seconds)
-        return "the limit of time was reached";
-    if (trace.iterations >= settings.most_iterations)
-        return "the limit of iterations was reached";
-    return std::nullopt;
-}
 
-/// Holds what sits at zero and was pushed below it; false when there was nothing of that kind.
-bool hold_pushed(const Vector& from, const Vector& target, const NonNegativeModel& model,
-                 std::vector<bool>& held) {
-    bool found = false;
-    for (Eigen::Index k = 0; k < from.size(); ++k) {
-        const bool pushed = from(k) <= 0.0 && target(k) < 0.0 && !model.may_be_negative(k);
-        found = found || (pushed && !held[static_cast<std::size_t>(k)]);
-        held[static_cast<std::size_t>(k)] = held[static_cast<std::size_t>(k)] || pushed;
+    bool must_stop() {
+        trace_.converged = trace_.kkt <= settings_.kkt_tolerance;
+        if (trace_.converged) {
+            trace_.stop_reason =
+                fmt::format("the KKT conditions hold to {:.1e}", settings_.kkt_tolerance);
+        } else if (idle_ >= most_idle_steps || damping_.is_hopeless()) {
+            trace_.converged = trace_.kkt <= kkt_of_rounding;
+            trace_.stop_reason = fmt::format(
+                "no step lowers the cost any more; the KKT conditions hold to {:.1e}", trace_.kkt);
+        } else if (seconds_since(begin_) > settings_.most_seconds) {
+            trace_.stop_reason = "the limit of time was reached";
+        } else if (trace_.iterations >= settings_.most_iterations) {
+            trace_.stop_reason = "the limit of iterations was reached";
+        }
+        return !trace_.stop_reason.empty();
     }
-    return found;
-}
 
-/// One round: moves `parameters` to a point of lower cost, or leaves them where there is none. When
-/// the cut off step does not lower the cost, it is computed anew without what was cut off, and at
-/// last as a single step, which goes downhill. Returns what failed, or nothing.
-std::string take_round(Minimisation& minimisation, const NonNegativeModel& model,
-                       const SolverSettings& settings, Vector& parameters, double cost,
-                       std::vector<bool> held, SolveTrace& trace, Clock::time_point start) {
-    int steps = settings.steps_per_round;
-    while (trace.iterations < settings.most_iterations) {
-        const ceres::Solver::Summary summary =
-            minimisation.solve(held, std::min(steps, settings.most_iterations - trace.iterations),
-                               settings.most_seconds);
-        record(trace, summary, seconds_since(start) - summary.total_time_in_seconds);
-        if (summary.termination_type == ceres::FAILURE)
-            return "Ceres failed: " + summary.message;
-        const Vector target = minimisation.values();
-        const Vector next = projected_step(minimisation, model, parameters, target, cost);
-        minimisation.values() = next;
-        const bool moved = next != parameters;
-        parameters = next;
-        const bool more_held = !moved && hold_pushed(parameters, target, model, held);
-        if (moved || (!more_held && steps == 1))
-            break;
-        steps = more_held ? steps : 1;
+    /// The damped quadratic about here, as a function of the parameters at the step's end. One that
+    /// nothing depends on stays where it is.
+    Quadratic damped_quadratic() const {
+        Quadratic quadratic{here_.normal, {}};
+        for (Eigen::Index k = 0; k < parameters_.size(); ++k) {
+            const double curvature = here_.curvature(k);
+            quadratic.h.coeffRef(k, k) += curvature > 0.0 ? damping_.value() * curvature : 1.0;
+        }
+        quadratic.c = here_.gradient - quadratic.h * parameters_;
+        return quadratic;
     }
-    return {};
-}
+
+    /// Tries steps of growing damping until one does not raise the cost.
+    void take_step() {
+        while (!damping_.is_hopeless()) {
+            ++trace_.iterations;
+            const Quadratic quadratic = damped_quadratic();
+            std::vector<bool> free(bounded_.size());
+            for (std::size_t k = 0; k < free.size(); ++k)
+                free[k] = !bounded_[k] || parameters_(static_cast<Eigen::Index>(k)) > 0.0;
+            const bool dense = model_.linear_algebra().type != LinearAlgebra::Type::SparseNormal;
+            const auto target = minimise_quadratic(quadratic, bounded_, dense, free);
+            if (target && accepts(*target))
+                return;
+            damping_.refuse();
+        }
+    }
+
+    bool accepts(const Vector& target) {
+        const Vector step = target - parameters_;
+        const double cost = here_.cost_at(target);
+        const double expected = -here_.gradient.dot(step) - 0.5 * step.dot(here_.normal * step);
+        const double rounding = cost_rounding * here_.cost;
+        if (!(cost <= here_.cost + rounding))
+            return false;
+        damping_.accept(expected > rounding ? (here_.cost - cost) / expected : 1.0);
+        idle_ = here_.cost - cost > rounding ? 0 : idle_ + 1;
+        parameters_ = target;
+        return true;
+    }
+
+    const NonNegativeModel& model_;
+    Vector& parameters_;
+    const SolverSettings& settings_;
+    Clock::time_point start_, begin_;
+    std::vector<bool> bounded_;
+    Linearisation here_;
+    Damping damping_;
+    SolveTrace trace_;
+    int idle_ = 0;
+};
 
 } // namespace
 
@@ -276,37 +230,7 @@ double kkt_violation(const Vector& parameters, const Vector& gradient, const Vec
 
 SolveTrace minimise_non_negative(const NonNegativeModel& model, Vector& parameters,
                                  const SolverSettings& settings, Clock::time_point start) {
-    const Clock::time_point begin = Clock::now();
-    parameters = projected(parameters, model);
-    Minimisation minimisation(model, parameters, settings);
-    SolveTrace trace;
-    double cost = 0.0, last_cost = std::numeric_limits<double>::infinity();
-    double last_kkt = std::numeric_limits<double>::infinity();
-    Vector gradient, curvature;
-    for (;;) {
-        if (!minimisation.linearise(cost, gradient, curvature)) {
-            trace.stop_reason = "the cost or its slope is not finite";
-            return trace;
-        }
-        trace.cost.push_back(cost);
-        trace.seconds.push_back(seconds_since(start));
-        trace.kkt = kkt_violation(parameters, gradient, curvature, model);
-        const bool is_stuck =
-            cost >= last_cost * (1.0 - cost_rounding) && trace.kkt > 0.5 * last_kkt;
-        if (const auto reason = reason_to_stop(trace, settings, is_stuck, seconds_since(begin))) {
-            trace.stop_reason = *reason;
-            return trace;
-        }
-        last_cost = cost;
-        last_kkt = trace.kkt;
-        if (const std::string fault =
-                take_round(minimisation, model, settings, parameters, cost,
-                           held_at_zero(parameters, gradient, curvature, model), trace, start);
-            !fault.empty()) {
-            trace.stop_reason = fault;
-            return trace;
-        }
-    }
+    return Descent(model, parameters, settings, start).run();
 }
 
 } // namespace reradiant

@@ -12,10 +12,9 @@ class Problem;
 
 namespace reradiant {
 
-/// How Ceres solves the linear system of a step.
+/// How the linear systems of a step are solved.
 struct LinearAlgebra {
-    enum class Type { DenseNormal, SparseNormal, DenseSchur } type = Type::DenseNormal;
-    std::size_t eliminated_blocks = 0; ///< DenseSchur: the first blocks, no two in one residual
+    enum class Type { DenseNormal, SparseNormal } type = Type::DenseNormal;
 };
 
 /// A least-squares problem whose parameters may not be negative (unless free). The parameters form
@@ -31,8 +30,7 @@ public:
 };
 
 struct SolverSettings {
-    int most_iterations = 400; ///< Ceres steps, over all rounds
-    int steps_per_round = 25;
+    int most_iterations = 400;
     double kkt_tolerance = 1e-8;
     double most_seconds = 60.0;
     int threads = 1;
@@ -54,10 +52,11 @@ struct SolveTrace {
 double kkt_violation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& gradient,
                      const Eigen::VectorXd& curvature, const NonNegativeModel& model);
 
-/// Minimises by rounds: parameters that sit at zero with a gradient that holds them there are taken
-/// out of the problem, Ceres minimises the others without bounds (its own bounds stop at wrong
-/// points, CASES 45 to 47), and what came out negative is set to zero, all at once if that lowers
-/// the cost, else by a shorter step. Ends when the KKT conditions hold. Never raises the cost.
+/// Minimises by Levenberg-Marquardt steps whose quadratic is minimised exactly under the bounds
+/// (bounded_quadratic.h): the bounds of Ceres 2.1 stop at wrong points (CASES 45 to 47), so Ceres
+/// evaluates residuals, losses and Jacobians, and the steps are taken here. Ends when the KKT
+/// conditions hold to the tolerance, or to 1e-6 where rounding keeps the cost from falling. Never
+/// raises the cost beyond rounding.
 SolveTrace minimise_non_negative(const NonNegativeModel& model, Eigen::VectorXd& parameters,
                                  const SolverSettings& settings,
                                  std::chrono::steady_clock::time_point start);
