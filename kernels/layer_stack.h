@@ -216,7 +216,9 @@ DEVICE_FUNCTION real layer_stack_part_lobe(LayerRecord layer, real eta, LayerFac
 /// Henyey and Greenstein 1941, 1/sr over the sphere; (1 - g)^2 + 2 g (1 - cos) keeps its digits
 /// where g is near 1.
 DEVICE_FUNCTION real layer_stack_phase(real g, real cos_deflection) {
-    const real d = square(REAL(1.0) - g) + REAL(2.0) * g * (REAL(1.0) - cos_deflection);
+    const real d = g < REAL(0.0)
+                       ? square(REAL(1.0) + g) - REAL(2.0) * g * (REAL(1.0) + cos_deflection)
+                       : square(REAL(1.0) - g) + REAL(2.0) * g * (REAL(1.0) - cos_deflection);
     return (REAL(1.0) - g) * (REAL(1.0) + g) * REAL(0.25) * INV_PI_REAL /
            (d * sqrt(fmax(d, REAL(1e-30))));
 }

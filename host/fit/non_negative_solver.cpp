@@ -135,6 +135,7 @@ public:
 
 private:
     void note() {
+        ++trace_.iterations;
         trace_.cost.push_back(here_.cost);
         trace_.seconds.push_back(seconds_since(start_));
         trace_.kkt = kkt_violation(parameters_, here_.gradient, here_.curvature, model_);
@@ -172,7 +173,6 @@ private:
     /// Tries steps of growing damping until one does not raise the cost.
     void take_step() {
         while (!damping_.is_hopeless()) {
-            ++trace_.iterations;
             const Quadratic quadratic = damped_quadratic();
             std::vector<bool> free(bounded_.size());
             for (std::size_t k = 0; k < free.size(); ++k)
