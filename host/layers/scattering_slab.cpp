@@ -61,7 +61,8 @@ CellPhase integrate_phase(const AngularGrid& grid, double g) {
 /// The last phase functions: slabs differ in optical depth from band to band, not in g.
 std::shared_ptr<const CellPhase> phase_of(const AngularGrid& grid, double g) {
     static std::mutex mutex;
-    static std::map<std::tuple<std::vector<double>, double>, std::shared_ptr<const CellPhase>> known;
+    static std::map<std::tuple<std::vector<double>, double>, std::shared_ptr<const CellPhase>>
+        known;
     const std::scoped_lock lock(mutex);
     if (known.size() > 64) {
         known.clear();

@@ -74,7 +74,8 @@ TEST_F(FitCommand, BadInputIsRefusedAndNothingIsWritten) {
 
 TEST_F(FitCommand, NothingIsWrittenWithoutConvergence) {
     put("data.csv", measured_csv());
-    expect_failure(1, "fit data.csv -o out.csv --model-file m.toml --json j.json "
-                      "--most-iterations 1",
+    expect_failure(1,
+                   "fit data.csv -o out.csv --model-file m.toml --json j.json "
+                   "--most-iterations 1",
                    "did not converge");
 }
