@@ -28,16 +28,20 @@ float grey_lookup(__global const float* table, TableStencil s) {
            s.w3 * table[s.node + 3u];
 }
 
+/// Value of a table by lanes, [phase][node][lane], for 16 of them.
+float16 spectral_lookup(const GatherContext* context, uint offset, TableStencil s, uint chunk) {
+    __global const float* rows = context->tables + offset +
+                                 ((size_t)context->phase * TABLE_NODES + s.node) * LANES +
+                                 chunk * WIDTH;
+    return s.w0 * vload16(0, rows) + s.w1 * vload16(0, rows + LANES) +
+           s.w2 * vload16(0, rows + 2 * LANES) + s.w3 * vload16(0, rows + 3 * LANES);
+}
+
 /// Table value for 16 lanes: the same number for a grey stack.
 float16 stack_lookup(const GatherContext* context, uint offset, TableStencil s, uint chunk) {
 #if FEATURE_SPECTRAL_STACK
-    if (context->material.spectral) {
-        __global const float* rows = context->tables + offset +
-                                     ((size_t)context->phase * TABLE_NODES + s.node) * LANES +
-                                     chunk * WIDTH;
-        return s.w0 * vload16(0, rows) + s.w1 * vload16(0, rows + LANES) +
-               s.w2 * vload16(0, rows + 2 * LANES) + s.w3 * vload16(0, rows + 3 * LANES);
-    }
+    if (context->material.spectral)
+        return spectral_lookup(context, offset, s, chunk);
 #endif
     return (float16)(grey_lookup(context->tables + offset, s));
 }
@@ -55,12 +59,7 @@ float16 fresnel_lanes(__global const float* eta, float cos_h) {
 #if FEATURE_TABULATED_REFLECTANCE
 /// Reflectance of a part's facets for 16 lanes, tabulated over the cosine at the facet.
 float16 facet_reflectance(const GatherContext* context, uint offset, float cos_h, uint chunk) {
-    const TableStencil s = table_stencil(cos_h);
-    __global const float* rows = context->tables + offset +
-                                 ((size_t)context->phase * TABLE_NODES + s.node) * LANES +
-                                 chunk * WIDTH;
-    return s.w0 * vload16(0, rows) + s.w1 * vload16(0, rows + LANES) +
-           s.w2 * vload16(0, rows + 2 * LANES) + s.w3 * vload16(0, rows + 3 * LANES);
+    return spectral_lookup(context, offset, table_stencil(cos_h), chunk);
 }
 #endif
 

@@ -326,7 +326,7 @@ void WalkTally::set_zero() {
     lost.setZero();
 }
 
-LayerWalk::LayerWalk(const LayerStack& stack, const WalkSubstrate& substrate,
+LayerWalk::LayerWalk(const LayerStack& stack, const SubstrateValues& substrate,
                      const std::vector<double>& wavelengths_nm)
     : material_(stack, substrate, wavelengths_nm) {}
 

@@ -52,7 +52,7 @@ struct WalkSample {
 class LayerWalk {
 public:
     /// One band a wavelength. Input Error for numbers out of range.
-    LayerWalk(const LayerStack& stack, const WalkSubstrate& substrate,
+    LayerWalk(const LayerStack& stack, const SubstrateValues& substrate,
               const std::vector<double>& wavelengths_nm);
 
     int bands() const { return material_.bands(); }

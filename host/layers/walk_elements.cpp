@@ -12,7 +12,7 @@ namespace reradiant {
 namespace {
 
 /// The matrix as light feels it, or with nothing in it for a conductor.
-Eigen::MatrixXd checked_matrix(const WalkSubstrate& substrate, std::size_t bands) {
+Eigen::MatrixXd checked_matrix(const SubstrateValues& substrate, std::size_t bands) {
     const auto n = static_cast<Eigen::Index>(bands);
     if (!substrate.conductor.empty()) {
         return Eigen::MatrixXd::Zero(n, n);
@@ -55,8 +55,8 @@ void add_layer(WalkElements& elements, const StackValues& stack, std::size_t k) 
     }
 }
 
-WalkElements elements_at(const StackValues& stack, const WalkSubstrate& substrate, std::size_t band,
-                         double wavelength_nm) {
+WalkElements elements_at(const StackValues& stack, const SubstrateValues& substrate,
+                         std::size_t band, double wavelength_nm) {
     check_stack(stack);
     WalkElements elements;
     for (std::size_t k = 0; k < stack.size(); ++k) {
@@ -87,7 +87,7 @@ StackValues ways_of(StackValues stack) {
 
 } // namespace
 
-WalkMaterial::WalkMaterial(const LayerStack& stack, const WalkSubstrate& substrate,
+WalkMaterial::WalkMaterial(const LayerStack& stack, const SubstrateValues& substrate,
                            const std::vector<double>& wavelengths_nm)
     : matrix_(checked_matrix(substrate, wavelengths_nm.size())) {
     fluorescent_ = !matrix_.isDiagonal(0.0);

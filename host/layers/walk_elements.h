@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/layers/stack.h"
+#include "host/layers/substrate_values.h"
 #include "host/layers/walk_surface.h"
 
 #include <Eigen/Core>
@@ -8,15 +9,6 @@
 #include <vector>
 
 namespace reradiant {
-
-/// The bottom of a stack as the walk meets it.
-struct WalkSubstrate {
-    /// Diffuse: per-band re-radiation matrix, (bands, bands), rows = emission, entries >= 0.
-    Eigen::MatrixXd matrix;
-    double sigma = 0.0; ///< Oren-Nayar; 0: Lambertian
-    /// A conductor at every band instead; empty: diffuse.
-    std::vector<ConductorValues> conductor = {};
-};
 
 /// What light meets on its way down, from the air to the substrate.
 struct WalkElement {
@@ -34,7 +26,7 @@ using WalkElements = std::vector<WalkElement>;
 /// A material as lists of elements.
 class WalkMaterial {
 public:
-    WalkMaterial(const LayerStack& stack, const WalkSubstrate& substrate,
+    WalkMaterial(const LayerStack& stack, const SubstrateValues& substrate,
                  const std::vector<double>& wavelengths_nm);
 
     int bands() const { return static_cast<int>(by_band_.size()); }

@@ -20,7 +20,7 @@ namespace {
 
 class AddingSurface final : public SurfaceModel {
 public:
-    AddingSurface(const LayerStack& stack, const MeasuredSubstrate& substrate,
+    AddingSurface(const LayerStack& stack, const SubstrateValues& substrate,
                   const WavelengthGrid& bands)
         : stacks_(values_at(stack, bands)), sigma_(substrate.sigma), first_(substrate.matrix) {
         Eigen::VectorXd r(bands.count);
@@ -127,7 +127,7 @@ private:
 } // namespace
 
 std::unique_ptr<SurfaceModel> adding_surface(const LayerStack& stack,
-                                             const MeasuredSubstrate& substrate,
+                                             const SubstrateValues& substrate,
                                              const WavelengthGrid& bands) {
     if (!substrate.conductor.empty()) {
         throw_input_error({}, "adding does not know conductors",

@@ -16,8 +16,7 @@ namespace {
 /// The cosine's least share: it finds what no lobe of its own covers.
 constexpr double least_cosine = 0.1;
 
-std::unique_ptr<SurfaceModel> surface_of(const LayerStack& stack,
-                                         const MeasuredSubstrate& substrate,
+std::unique_ptr<SurfaceModel> surface_of(const LayerStack& stack, const SubstrateValues& substrate,
                                          const WavelengthGrid& bands, Model model) {
     if (model == Model::Adding) {
         return adding_surface(stack, substrate, bands);
@@ -31,7 +30,7 @@ std::unique_ptr<SurfaceModel> surface_of(const LayerStack& stack,
 
 } // namespace
 
-LayeredBsdf::LayeredBsdf(const LayerStack& stack, const MeasuredSubstrate& substrate,
+LayeredBsdf::LayeredBsdf(const LayerStack& stack, const SubstrateValues& substrate,
                          const WavelengthGrid& bands, Model model)
     : surface_(surface_of(stack, substrate, bands, model)), lobes_(surface_->lobes()),
       bands_(bands.count) {

@@ -18,7 +18,7 @@ namespace reradiant {
 class LayeredBsdf {
 public:
     /// Model Adding or WeidlichWilkie; Input Error for others and for what the model cannot do.
-    LayeredBsdf(const LayerStack& stack, const MeasuredSubstrate& substrate,
+    LayeredBsdf(const LayerStack& stack, const SubstrateValues& substrate,
                 const WavelengthGrid& bands, Model model);
 
     /// The BSDF without the cosine and without deltas, 1/sr, per band: (bands, bands), rows =

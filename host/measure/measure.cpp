@@ -141,7 +141,7 @@ WavelengthGrid bands_of(const Material& material, const MeasureRequest& request)
 
 } // namespace
 
-Measurement measure_substrate(const LayerStack& stack, const MeasuredSubstrate& substrate,
+Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request) {
     check_request(request);
     if (request.model == Model::Walk) {
@@ -176,8 +176,8 @@ Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_ba
     return measure_substrate(stack, {per_band, 0.0, {}}, bands, request);
 }
 
-MeasuredSubstrate measured_substrate(const Substrate& substrate, const WavelengthGrid& bands) {
-    MeasuredSubstrate measured;
+SubstrateValues measured_substrate(const Substrate& substrate, const WavelengthGrid& bands) {
+    SubstrateValues measured;
     if (substrate.type == SubstrateType::Conductor) {
         for (const double nm : bands.centres_nm()) {
             measured.conductor.push_back(conductor_at(substrate.conductor, nm));

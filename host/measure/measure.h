@@ -56,11 +56,11 @@ Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_ba
                           const WavelengthGrid& bands, const MeasureRequest& request);
 
 /// The same over any substrate.
-Measurement measure_substrate(const LayerStack& stack, const MeasuredSubstrate& substrate,
+Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request);
 
 /// A substrate at the band centres.
-MeasuredSubstrate measured_substrate(const Substrate& substrate, const WavelengthGrid& bands);
+SubstrateValues measured_substrate(const Substrate& substrate, const WavelengthGrid& bands);
 
 /// Writes the CSV of INTERFACE "measure": notes as # lines, then the header and one line a row, 12
 /// significant digits. Atomic.

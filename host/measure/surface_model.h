@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/layers/adding.h"
-#include "host/layers/walk_elements.h"
+#include "host/layers/substrate_values.h"
 #include "host/spectral/grid.h"
 #include "kernels/portable.h"
 
@@ -12,8 +12,6 @@
 #include <vector>
 
 namespace reradiant {
-
-using MeasuredSubstrate = WalkSubstrate;
 
 /// What a closed model says of a stack over a substrate, at the band centres. No cosine in
 /// directional values. `diffuse` reached the substrate, of whatever type; `specular` never did.
@@ -44,12 +42,12 @@ public:
 
 /// Model B, every interreflection. Input Error for a conductor and for stacks that adding refuses.
 std::unique_ptr<SurfaceModel> adding_surface(const LayerStack& stack,
-                                             const MeasuredSubstrate& substrate,
+                                             const SubstrateValues& substrate,
                                              const WavelengthGrid& bands);
 /// Model A, Weidlich and Wilkie 2007, for anything. Hemispherical values are integrated
 /// numerically, to about 1e-5 of the incident light (1e-4 with blinn, whose G has kinks).
 std::unique_ptr<SurfaceModel> weidlich_wilkie_surface(const LayerStack& stack,
-                                                      const MeasuredSubstrate& substrate,
+                                                      const SubstrateValues& substrate,
                                                       const WavelengthGrid& bands);
 
 } // namespace reradiant

@@ -81,7 +81,7 @@ void add_notes(Measurement& measurement, const LayerWalk& walk, long samples, un
 
 } // namespace
 
-Measurement measure_by_walk(const LayerStack& stack, const WalkSubstrate& substrate,
+Measurement measure_by_walk(const LayerStack& stack, const SubstrateValues& substrate,
                             const WavelengthGrid& bands, const MeasureRequest& request) {
     Measurement measurement;
     measurement.bands = bands;

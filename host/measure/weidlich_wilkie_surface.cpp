@@ -33,7 +33,7 @@ bool has_lobes(const StackValues& stack) {
 
 class WeidlichWilkieSurface final : public SurfaceModel {
 public:
-    WeidlichWilkieSurface(const LayerStack& stack, const MeasuredSubstrate& substrate,
+    WeidlichWilkieSurface(const LayerStack& stack, const SubstrateValues& substrate,
                           const WavelengthGrid& bands)
         : sigma_(substrate.sigma), matrix_(substrate.matrix) {
         std::vector<StackValues> stacks = values_at(stack, bands);
@@ -238,7 +238,7 @@ double WeidlichWilkieSurface::hemispherical_specular(int band, double c) const {
 } // namespace
 
 std::unique_ptr<SurfaceModel> weidlich_wilkie_surface(const LayerStack& stack,
-                                                      const MeasuredSubstrate& substrate,
+                                                      const SubstrateValues& substrate,
                                                       const WavelengthGrid& bands) {
     return std::make_unique<WeidlichWilkieSurface>(stack, substrate, bands);
 }

@@ -325,10 +325,10 @@ TEST(Walk, Case12HenyeyGreensteinKeepsItsMeanCosine) {
 }
 
 TEST(Walk, WhatCannotBeIsRefused) {
-    const auto refused = [](const LayerStack& stack, const WalkSubstrate& substrate) {
+    const auto refused = [](const LayerStack& stack, const SubstrateValues& substrate) {
         EXPECT_THROW(LayerWalk(stack, substrate, two_bands_nm), Error);
     };
-    const WalkSubstrate good{.matrix = bispectral_matrix()};
+    const SubstrateValues good{.matrix = bispectral_matrix()};
     refused({{plain_layer(-1.0, 0.0, 0.0)}}, good);
     refused({{plain_layer(1.5, 1.5, 0.0)}}, good);
     refused({{plain_layer(1.5, 0.0, -1.0)}}, good);

@@ -240,7 +240,7 @@ TEST(WeidlichWilkieParts, RoughMetalReflectsWhatTheWalkBetweenItsFacetsSays) {
     for (const Distribution d : {Distribution::Ggx, Distribution::Beckmann}) {
         ConductorValues metal{0.3, 3.0, d, 0.6, Scattering::Multiple};
         const WeidlichWilkieResidual residual({}, metal);
-        WalkSubstrate substrate;
+        SubstrateValues substrate;
         substrate.conductor = {metal};
         const LayerWalk walk({}, substrate, {550.0});
         for (const double theta : {0.0, 60.0}) {

@@ -33,14 +33,14 @@ Layer layer(double ior, double alpha, Distribution distribution) {
     made.scattering = Scattering::Single; // the operators of `multiple` take a second each
     return made;
 }
-MeasuredSubstrate grey(double reflectance, double sigma = 0.0) {
-    MeasuredSubstrate substrate;
+SubstrateValues grey(double reflectance, double sigma = 0.0) {
+    SubstrateValues substrate;
     substrate.matrix = Eigen::MatrixXd::Constant(1, 1, reflectance);
     substrate.sigma = sigma;
     return substrate;
 }
-MeasuredSubstrate metal(double alpha, Distribution distribution = Distribution::Ggx) {
-    MeasuredSubstrate substrate;
+SubstrateValues metal(double alpha, Distribution distribution = Distribution::Ggx) {
+    SubstrateValues substrate;
     substrate.conductor = {{0.3, 3.0, distribution, alpha, Scattering::Multiple}};
     return substrate;
 }
@@ -255,7 +255,7 @@ TEST(LayeredBsdf, SampledAlbedoIsTheHemisphericalMeasure) {
     flaked.flakes->reflector.alpha = 0.2;
     struct Material {
         LayerStack stack;
-        MeasuredSubstrate substrate;
+        SubstrateValues substrate;
         Model model;
     };
     const std::vector<Material> materials{
@@ -291,7 +291,7 @@ TEST(LayeredBsdf, SampledAlbedoIsTheHemisphericalMeasure) {
 TEST(LayeredBsdf, EvalIsWhatTheGoniophotometerSees) {
     Eigen::MatrixXd shift(2, 2);
     shift << 0.4, 0.0, 0.3, 0.6;
-    MeasuredSubstrate substrate;
+    SubstrateValues substrate;
     substrate.matrix = shift;
     const WavelengthGrid two{400, 100, 2};
     const LayerStack stack{{layer(1.5, 0.3, Distribution::Ggx)}};

@@ -36,12 +36,11 @@ Layer layer(double ior, double alpha = 0.0, Scattering scattering = Scattering::
     made.scattering = scattering;
     return made;
 }
-MeasuredSubstrate oren_nayar(double reflectance, double sigma) {
+SubstrateValues oren_nayar(double reflectance, double sigma) {
     return {Eigen::MatrixXd::Constant(1, 1, reflectance), sigma, {}};
 }
-MeasuredSubstrate conductor(double ior, double kappa, double alpha,
-                            Distribution d = Distribution::Ggx,
-                            Scattering s = Scattering::Multiple) {
+SubstrateValues conductor(double ior, double kappa, double alpha,
+                          Distribution d = Distribution::Ggx, Scattering s = Scattering::Multiple) {
     return {{}, 0.0, {{ior, kappa, d, alpha, s}}};
 }
 
@@ -56,14 +55,13 @@ MeasureRequest hemispherical(Model model, std::vector<double> thetas) {
 struct Parts {
     double diffuse = 0.0, specular = 0.0;
 };
-Parts whole(const LayerStack& stack, const MeasuredSubstrate& substrate, Model model,
-            double theta) {
+Parts whole(const LayerStack& stack, const SubstrateValues& substrate, Model model, double theta) {
     const auto rows = measure_substrate(stack, substrate, one, hemispherical(model, {theta})).rows;
     return {rows.at(0).value, rows.at(1).value};
 }
 
 /// Directional rows summed over the hemisphere: midpoint rule of 90 x 90 over one half.
-Parts integral(const LayerStack& stack, const MeasuredSubstrate& substrate, Model model,
+Parts integral(const LayerStack& stack, const SubstrateValues& substrate, Model model,
                double theta) {
     MeasureRequest request;
     request.model = model;
@@ -133,7 +131,7 @@ TEST(MeasureMaterials, HemisphericalIsTheIntegralOfTheDirectional) {
     flaked.flakes->reflector.alpha = 0.3;
     struct Case {
         LayerStack stack;
-        MeasuredSubstrate substrate;
+        SubstrateValues substrate;
         Model model;
     };
     const std::vector<Case> cases{
@@ -215,7 +213,7 @@ TEST(MeasureMaterials, AddingRefusesConductors) {
 }
 
 TEST(MeasureMaterials, NumbersOutOfRangeAreRefusedByEveryModel) {
-    const auto refused = [](const LayerStack& stack, const MeasuredSubstrate& substrate) {
+    const auto refused = [](const LayerStack& stack, const SubstrateValues& substrate) {
         for (const Model model : {Model::WeidlichWilkie, Model::Walk}) {
             EXPECT_THROW(measure_substrate(stack, substrate, one, hemispherical(model, {0})),
                          Error);

@@ -27,7 +27,7 @@ constexpr Geometry geometries[] = {{40, 30, 90}, {50, 35, 170}};
 
 std::unique_ptr<SurfaceModel> surface_model(const Material& m, Model model,
                                             const WavelengthGrid& grid) {
-    const MeasuredSubstrate substrate = measured_substrate(m.substrate, grid);
+    const SubstrateValues substrate = measured_substrate(m.substrate, grid);
     return model == Model::WeidlichWilkie ? weidlich_wilkie_surface(m.stack, substrate, grid)
                                           : adding_surface(m.stack, substrate, grid);
 }

@@ -282,8 +282,8 @@ std::vector<Material> materials_for_the_twin() {
             plaster_under({layer(1.3, 0.2)})};
 }
 
-WalkSubstrate twin_substrate(const Substrate& substrate, const std::vector<double>& nm) {
-    WalkSubstrate twin;
+SubstrateValues twin_substrate(const Substrate& substrate, const std::vector<double>& nm) {
+    SubstrateValues twin;
     const auto count = static_cast<Eigen::Index>(nm.size());
     twin.matrix = Eigen::MatrixXd::Zero(count, count);
     for (Eigen::Index i = 0; i < count; ++i)

@@ -137,7 +137,7 @@ void white_furnace() {
                "1.25 n, a third n again\n\n"
                "| slabs | n | alpha | theta | multiple, adding | multiple, walk | lost by single, "
                "adding | walk | s.e. |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
-    const WalkSubstrate white{.matrix = Eigen::MatrixXd::Identity(1, 1)};
+    const SubstrateValues white{.matrix = Eigen::MatrixXd::Identity(1, 1)};
     const double bound = sidak_bound(108);
     for (int slabs = 1; slabs <= 3; ++slabs) {
         for (const double ior : {1.2, 1.5, 2.4}) {
