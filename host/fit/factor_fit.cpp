@@ -11,8 +11,9 @@ using Clock = std::chrono::steady_clock;
 
 /// Spline spacings that the evidence chooses from, in steps of the grid, beside one number a band.
 constexpr double spacings_in_steps[] = {1.5, 2.0, 3.0};
-/// Starts that are followed to the end.
-constexpr std::size_t finalists = 6;
+/// Steps that each start is given at first: nearly all end in half as many, and one that does not
+/// is rarely the best.
+constexpr int first_steps = 100;
 
 /// Values of a curve at bands that no used entry depends on, from their neighbours on both sides.
 void bridge_gaps(const Eigen::ArrayXd& used, Eigen::MatrixXd& curves) {
@@ -35,16 +36,11 @@ public:
         : target_(target), settings_(settings), evidence_(evidence), begin_(begin) {}
 
     FittedCandidate fit(int rank, double spacing_nm, const std::vector<FactorCurves>& starts) {
-        FittedCandidate best;
-        for (std::size_t k = 0; k < std::min(starts.size(), finalists); ++k) {
-            FittedCandidate candidate = fit_from(rank, spacing_nm, starts[k]);
-            const bool better = candidate.fit.trace.converged != best.fit.trace.converged
-                                    ? candidate.fit.trace.converged
-                                    : candidate.criterion < best.criterion;
-            if (!best.model || better)
-                best = std::move(candidate);
-        }
-        return best;
+        SolverSettings solver = settings_.solver;
+        solver.most_iterations = std::min(solver.most_iterations, first_steps);
+        FittedCandidate best = best_of(rank, spacing_nm, starts, solver);
+        return best.fit.trace.converged ? std::move(best)
+                                        : best_of(rank, spacing_nm, starts, settings_.solver);
     }
 
     std::vector<FactorCurves> starts(int rank, const FactorCurves& smaller) const {
@@ -56,7 +52,22 @@ public:
     }
 
 private:
-    FittedCandidate fit_from(int rank, double spacing_nm, const FactorCurves& start) {
+    FittedCandidate best_of(int rank, double spacing_nm, const std::vector<FactorCurves>& starts,
+                            const SolverSettings& solver) {
+        FittedCandidate best;
+        for (const FactorCurves& start : starts) {
+            FittedCandidate candidate = fit_from(rank, spacing_nm, start, solver);
+            const bool better = candidate.fit.trace.converged != best.fit.trace.converged
+                                    ? candidate.fit.trace.converged
+                                    : candidate.criterion < best.criterion;
+            if (!best.model || better)
+                best = std::move(candidate);
+        }
+        return best;
+    }
+
+    FittedCandidate fit_from(int rank, double spacing_nm, const FactorCurves& start,
+                             const SolverSettings& solver) {
         const SmoothBasis emission = spline_basis(target_.emission, spacing_nm);
         const SmoothBasis excitation = spline_basis(target_.excitation, spacing_nm);
         FittedCandidate candidate;
@@ -67,8 +78,8 @@ private:
             model->parameters(coefficients_near(emission, start.emission),
                               coefficients_near(excitation, start.excitation));
         model->balance(parameters);
-        candidate.fit = minimise_within_budget(*model, target_, *candidate.penalty, parameters,
-                                               settings_.solver, begin_);
+        candidate.fit =
+            minimise_within_budget(*model, target_, *candidate.penalty, parameters, solver, begin_);
         model->balance(candidate.fit.parameters);
         if (emission.is_per_band() && excitation.is_per_band())
             bridge(*model, candidate.fit.parameters);

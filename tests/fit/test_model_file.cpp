@@ -3,7 +3,6 @@
 #include "host/scene/scene.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"
-#include "tests/fit/not_reached.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +20,6 @@ FitResult fitted(std::optional<int> rank) {
 } // namespace
 
 TEST(ModelFile, ScenesTakeItAsReradiation) {
-    NOT_REACHED_YET("the model file of two terms is far from the fit");
     const TemporaryFolder folder;
     const FitResult fit = fitted(2);
     const double difference = write_model_file(folder / "model.toml", fit, "unused.csv");
