@@ -100,7 +100,7 @@ TEST(StackInversion, SaysThatThicknessAndAbsorptionAreOne) {
 }
 
 TEST(StackInversion, FitsThroughTheLayer) {
-    NOT_REACHED_YET("the fit through a layer does not converge");
+    NOT_REACHED_YET("the bands of the fit cover 81 % of the truth");
     FitSettings settings;
     settings.stack = varnish();
     settings.rank = 1;
