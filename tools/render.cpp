@@ -91,8 +91,9 @@ nlohmann::ordered_json statistics_json(const RenderResult& result, const Device&
           {"count", plan.film.count}}},
         {"model", command.model},
         {"wavelengths",
-         {{"sampling", "comb"},
-          {"count", plan.comb.count},
+         {{"sampling", plan.hero > 0 ? "hero" : "comb"},
+          {"count", plan.hero > 0 ? plan.hero : plan.comb.count},
+          {"cells", plan.comb.count},
           {"from", plan.comb.from_nm},
           {"step", plan.comb.step_nm},
           {"phases", plan.phases},
@@ -133,7 +134,7 @@ void apply_texts(RenderCommand& command, const CommonOptions& common) {
     command.render.seed = common.seed;
     command.render.threads = common.threads;
     command.render.model = parse_model_option(command.model);
-    command.render.wavelengths.comb_count = parse_wavelengths_option(command.wavelengths);
+    command.render.wavelengths = parse_wavelengths_option(command.wavelengths);
     command.render.wavelengths.centred = command.phase == "centre";
     if (command.render.wavelengths.centred && command.render.wavelengths.comb_count > 0)
         throw_input_error({}, "--comb-phase centre needs one wavelength a film band",
@@ -256,7 +257,8 @@ void add_stopping_options(CLI::App& app, RenderCommand& command) {
 void add_sampling_options(CLI::App& app, RenderCommand& command) {
     app.add_option("--model", command.model,
                    "auto, adding, weidlich-wilkie or walk for every material");
-    app.add_option("--wavelengths", command.wavelengths, "comb or comb:N, N wavelengths a path");
+    app.add_option("--wavelengths", command.wavelengths,
+                   "comb or comb:N, N wavelengths a path; hero or hero:N, N sampled of them");
     app.add_option("--comb-phase", command.phase,
                    "random: anywhere in a band; centre: at the band centres only")
         ->check(CLI::IsMember({"random", "centre"}));
