@@ -84,9 +84,10 @@ Indices infeasible(const Vector& y, const Vector& slope, const std::vector<bool>
 std::optional<Vector> minimise_quadratic(const Quadratic& quadratic,
                                          const std::vector<bool>& bounded, bool dense,
                                          std::vector<bool>& free) {
+    constexpr int most_rounds = 60;
     std::size_t least = free.size() + 1;
     int patience = 3; // full exchanges that may pass without progress
-    for (std::size_t round = 0; round < 20 + 4 * free.size(); ++round) {
+    for (int round = 0; round < most_rounds; ++round) {
         const auto y = free_minimiser(quadratic, indices_of(free), dense);
         if (!y)
             return std::nullopt;
@@ -106,7 +107,7 @@ std::optional<Vector> minimise_quadratic(const Quadratic& quadratic,
             free[i] = !free[i];
         }
     }
-    return std::nullopt; // rounding makes signs flip for ever
+    return std::nullopt;
 }
 
 } // namespace reradiant

@@ -12,7 +12,7 @@ using Clock = std::chrono::steady_clock;
 /// Spline spacings that the evidence chooses from, in steps of the grid, beside one number a band.
 constexpr double spacings_in_steps[] = {1.5, 2.0, 3.0};
 /// Starts that are followed to the end.
-constexpr std::size_t finalists = 2;
+constexpr std::size_t finalists = 6;
 
 /// Values of a curve at bands that no used entry depends on, from their neighbours on both sides.
 void bridge_gaps(const Eigen::ArrayXd& used, Eigen::MatrixXd& curves) {

@@ -19,6 +19,12 @@ public:
     std::vector<int> block_sizes() const override;
     void add_residuals(ceres::Problem& problem, const std::vector<double*>& blocks) const override;
 
+    /// The excitation's.
+    std::pair<std::size_t, std::size_t> affine_blocks() const override {
+        return {static_cast<std::size_t>(emission_.size()),
+                static_cast<std::size_t>(excitation_.size())};
+    }
+
     FactorCurves curves(const Eigen::VectorXd& parameters) const override;
     Eigen::MatrixXd matrix(const Eigen::VectorXd& parameters) const override;
     Eigen::MatrixXd entry_jacobian(const Eigen::VectorXd& parameters) const override;

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace reradiant {
 
@@ -20,6 +22,23 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
+
+/// Cost and derivatives at a point.
+struct LocalModel {
+    double cost = 0.0;
+    Vector gradient, curvature;         ///< curvature: diagonal of `normal`
+    Eigen::SparseMatrix<double> normal; ///< J' J
+
+    /// The quadratic of a step from `parameters`, damped in units of the curvatures, as a function
+    /// of the parameters at the step's end. One that nothing depends on stays where it is.
+    Quadratic damped(const Vector& parameters, double damping) const {
+        Quadratic quadratic{normal, {}};
+        for (Eigen::Index k = 0; k < parameters.size(); ++k)
+            quadratic.h.coeffRef(k, k) += curvature(k) > 0.0 ? damping * curvature(k) : 1.0;
+        quadratic.c = gradient - quadratic.h * parameters;
+        return quadratic;
+    }
+};
 
 /// The Ceres problem of a model with its parameters in one vector. Ceres evaluates residuals,
 /// losses and Jacobians.
@@ -46,26 +65,33 @@ public:
         return good && std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
     }
 
-    double cost = 0.0;
-    Vector gradient, curvature;         ///< curvature: diagonal of `normal`
-    Eigen::SparseMatrix<double> normal; ///< J' J
-
-    /// Fills cost, gradient, curvature and normal; false where they are not defined.
-    bool linearise(const Vector& point) {
+    /// Cost and its derivatives by some blocks, all where `blocks` is empty; nothing where they are
+    /// not defined.
+    std::optional<LocalModel> linearise(const Vector& point, const std::vector<double*>& blocks) {
         values_ = point;
+        LocalModel local;
         std::vector<double> slope;
         ceres::CRSMatrix crs;
-        if (!problem_.Evaluate(options_, &cost, nullptr, &slope, &crs))
-            return false;
-        gradient = Eigen::Map<const Vector>(slope.data(), static_cast<Eigen::Index>(slope.size()));
+        ceres::Problem::EvaluateOptions options = options_;
+        if (!blocks.empty())
+            options.parameter_blocks = blocks;
+        if (!problem_.Evaluate(options, &local.cost, nullptr, &slope, &crs))
+            return std::nullopt;
+        local.gradient =
+            Eigen::Map<const Vector>(slope.data(), static_cast<Eigen::Index>(slope.size()));
         const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> jacobian(
             crs.num_rows, crs.num_cols, static_cast<Eigen::Index>(crs.values.size()),
             crs.rows.data(), crs.cols.data(), crs.values.data());
         const Eigen::SparseMatrix<double> columns(jacobian);
-        normal = columns.transpose() * columns;
-        curvature = normal.diagonal();
-        return std::isfinite(cost) && gradient.allFinite();
+        local.normal = columns.transpose() * columns;
+        local.curvature = local.normal.diagonal();
+        if (!std::isfinite(local.cost) || !local.gradient.allFinite())
+            return std::nullopt;
+        return local;
     }
+
+    const double* data() const { return values_.data(); }
+    const std::vector<double*>& blocks() const { return options_.parameter_blocks; }
 
 private:
     Vector values_;
@@ -98,6 +124,8 @@ private:
 constexpr double cost_rounding = 1e-14;
 /// KKT violation that still counts as convergence when rounding keeps the cost from falling.
 constexpr double kkt_of_rounding = 1e-6;
+/// Damping of the affine blocks alone, only against singular ones.
+constexpr double ridge = 1e-12;
 /// Steps in a row that change nothing beyond rounding.
 constexpr int most_idle_steps = 8;
 
@@ -115,14 +143,15 @@ public:
             Clock::time_point start)
         : model_(model), parameters_(parameters), settings_(settings), start_(start),
           begin_(Clock::now()), bounded_(bounded_parameters(model, parameters.size())),
-          here_(model, parameters, settings) {
+          problem_(model, parameters, settings) {
         for (Eigen::Index k = 0; k < parameters_.size(); ++k)
             if (bounded_[static_cast<std::size_t>(k)])
                 parameters_(k) = std::max(parameters_(k), 0.0);
     }
 
     SolveTrace run() {
-        while (here_.linearise(parameters_)) {
+        while (auto local = problem_.linearise(parameters_, {})) {
+            here_ = std::move(*local);
             note();
             if (must_stop())
                 return trace_;
@@ -158,41 +187,64 @@ private:
         return !trace_.stop_reason.empty();
     }
 
-    /// The damped quadratic about here, as a function of the parameters at the step's end. One that
-    /// nothing depends on stays where it is.
-    Quadratic damped_quadratic() const {
-        Quadratic quadratic{here_.normal, {}};
-        for (Eigen::Index k = 0; k < parameters_.size(); ++k) {
-            const double curvature = here_.curvature(k);
-            quadratic.h.coeffRef(k, k) += curvature > 0.0 ? damping_.value() * curvature : 1.0;
-        }
-        quadratic.c = here_.gradient - quadratic.h * parameters_;
-        return quadratic;
-    }
-
     /// Tries steps of growing damping until one does not raise the cost.
     void take_step() {
+        const bool dense = model_.linear_algebra().type != LinearAlgebra::Type::SparseNormal;
         while (!damping_.is_hopeless()) {
-            const Quadratic quadratic = damped_quadratic();
-            std::vector<bool> free(bounded_.size());
-            for (std::size_t k = 0; k < free.size(); ++k)
-                free[k] = !bounded_[k] || parameters_(static_cast<Eigen::Index>(k)) > 0.0;
-            const bool dense = model_.linear_algebra().type != LinearAlgebra::Type::SparseNormal;
-            const auto target = minimise_quadratic(quadratic, bounded_, dense, free);
+            std::vector<bool> free = free_at(parameters_, 0, parameters_.size());
+            const auto target = minimise_quadratic(here_.damped(parameters_, damping_.value()),
+                                                   bounded_, dense, free);
             if (target && accepts(*target))
                 return;
             damping_.refuse();
         }
     }
 
-    bool accepts(const Vector& target) {
+    std::vector<bool> free_at(const Vector& point, Eigen::Index first, Eigen::Index count) const {
+        std::vector<bool> free(static_cast<std::size_t>(count));
+        for (std::size_t k = 0; k < free.size(); ++k) {
+            const Eigen::Index parameter = first + static_cast<Eigen::Index>(k);
+            free[k] = !bounded_[static_cast<std::size_t>(parameter)] || point(parameter) > 0.0;
+        }
+        return free;
+    }
+
+    /// Solves for the affine blocks at a point; returns the cost there.
+    double settle_affine(Vector& point) {
+        const double cost = problem_.cost_at(point);
+        const auto [first, count] = model_.affine_blocks();
+        if (count == 0)
+            return cost;
+        const auto begin = problem_.blocks().begin() + static_cast<std::ptrdiff_t>(first);
+        const std::vector<double*> blocks(begin, begin + static_cast<std::ptrdiff_t>(count));
+        const auto local = problem_.linearise(point, blocks);
+        if (!local)
+            return cost;
+        const Eigen::Index size = local->gradient.size(), offset = blocks.front() - problem_.data();
+        std::vector<bool> free = free_at(point, offset, size);
+        const std::vector<bool> bounded(bounded_.begin() + offset,
+                                        bounded_.begin() + offset + size);
+        const auto settled = minimise_quadratic(local->damped(point.segment(offset, size), ridge),
+                                                bounded, false, free);
+        if (!settled)
+            return cost;
+        Vector moved = point;
+        moved.segment(offset, size) = *settled;
+        const double lower = problem_.cost_at(moved);
+        if (!(lower < cost))
+            return cost;
+        point = moved;
+        return lower;
+    }
+
+    bool accepts(Vector target) {
         const Vector step = target - parameters_;
-        const double cost = here_.cost_at(target);
+        const double cost = settle_affine(target);
         const double expected = -here_.gradient.dot(step) - 0.5 * step.dot(here_.normal * step);
         const double rounding = cost_rounding * here_.cost;
         if (!(cost <= here_.cost + rounding))
             return false;
-        damping_.accept(expected > rounding ? (here_.cost - cost) / expected : 1.0);
+        damping_.accept(expected > rounding ? std::min(1.0, (here_.cost - cost) / expected) : 1.0);
         idle_ = here_.cost - cost > rounding ? 0 : idle_ + 1;
         parameters_ = target;
         return true;
@@ -203,7 +255,8 @@ private:
     const SolverSettings& settings_;
     Clock::time_point start_, begin_;
     std::vector<bool> bounded_;
-    Linearisation here_;
+    Linearisation problem_;
+    LocalModel here_;
     Damping damping_;
     SolveTrace trace_;
     int idle_ = 0;

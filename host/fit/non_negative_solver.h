@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 
 #include <chrono>
+#include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ceres {
@@ -27,6 +29,8 @@ public:
     virtual void add_residuals(ceres::Problem& problem,
                                const std::vector<double*>& blocks) const = 0;
     virtual LinearAlgebra linear_algebra() const { return {}; }
+    /// Blocks in which the residuals are affine while the others stay: first, and how many.
+    virtual std::pair<std::size_t, std::size_t> affine_blocks() const { return {0, 0}; }
 };
 
 struct SolverSettings {
@@ -54,7 +58,9 @@ double kkt_violation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& g
 
 /// Minimises by Levenberg-Marquardt steps whose quadratic is minimised exactly under the bounds
 /// (bounded_quadratic.h): the bounds of Ceres 2.1 stop at wrong points (CASES 45 to 47), so Ceres
-/// evaluates residuals, losses and Jacobians, and the steps are taken here. Ends when the KKT
+/// evaluates residuals, losses and Jacobians, and the steps are taken here. After each step the
+/// affine blocks are solved for (Ruhe and Wedin 1980, algorithm 2): factors may be mixed at almost
+/// no cost, and a step of both factors at once leaves that curved valley. Ends when the KKT
 /// conditions hold to the tolerance, or to 1e-6 where rounding keeps the cost from falling. Never
 /// raises the cost beyond rounding.
 SolveTrace minimise_non_negative(const NonNegativeModel& model, Eigen::VectorXd& parameters,
