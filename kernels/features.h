@@ -97,6 +97,12 @@
 #define FEATURE_BAND_VARIANCE 1
 #endif
 
+/// Wavelengths that a path carries when they are sampled from a hero; 0: all lanes (comb).
+#ifndef HERO
+#define HERO 0
+#endif
+#define FEATURE_HERO (HERO > 0)
+
 /// Vectors of WIDTH wavelengths; CHUNKS of them make a path's lanes.
 #ifndef CHUNKS
 #define CHUNKS 4

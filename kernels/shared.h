@@ -183,9 +183,11 @@ typedef struct {
     shared_float lowest_ior;    ///< of the medium above the substrate, at the reference wavelength
     shared_uint first_diagonal; ///< oren-nayar: the substrate's own operator, like the others
     shared_uint first_factors, first_dense;
-    shared_uint walk; ///< walked through: the first of its layer_count + 1 parts; or NO_INDEX
+    shared_uint walk;  ///< walked through: the first of its layer_count + 1 parts; or NO_INDEX
+    shared_uint shift; ///< hero: [phase][emission lane][excitation lane], cumulative probability;
+                       ///< NO_INDEX: nothing shifts
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 96);
+ASSERT_SIZE(MaterialRecord, 100);
 
 /// Extinctions that distances in a scattering slab are sampled with (walk.h).
 #define WALK_REFERENCES 4

@@ -61,19 +61,25 @@ Model parse_model_option(const std::string& text) {
     }
 }
 
-int parse_wavelengths_option(const std::string& text) {
+WavelengthOptions parse_wavelengths_option(const std::string& text) {
     const std::vector<std::string_view> parts = split_at_colons(text);
-    constexpr const char* remedy = "write comb or comb:N with N from 1 to 4096";
-    if (parts.front() == "hero")
-        throw_input_error({}, "--wavelengths hero is not part of this version", remedy);
-    if (parts.front() != "comb" || parts.size() > 2)
+    const std::string remedy =
+        fmt::format("write comb or comb:N with N from 1 to {}, or hero or hero:N with N from 1 to "
+                    "{}",
+                    most_comb_wavelengths, most_hero_wavelengths);
+    const bool hero = parts.front() == "hero";
+    if ((!hero && parts.front() != "comb") || parts.size() > 2)
         throw_input_error({}, fmt::format("--wavelengths '{}' is not known", text), remedy);
+    WavelengthOptions options;
+    int& wanted = hero ? options.hero_count : options.comb_count;
+    wanted = hero ? default_hero_wavelengths : 0;
     if (parts.size() == 1)
-        return 0;
+        return options;
     const auto count = number<int>(parts[1]);
-    if (!count || *count < 1 || *count > most_comb_wavelengths)
+    if (!count || *count < 1 || *count > (hero ? most_hero_wavelengths : most_comb_wavelengths))
         throw_input_error({}, fmt::format("--wavelengths '{}' has no valid count", text), remedy);
-    return *count;
+    wanted = *count;
+    return options;
 }
 
 SampleRange parse_sample_range_option(const std::string& text) {

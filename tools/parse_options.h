@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/film/merge.h"
+#include "host/render/wavelength_plan.h"
 #include "host/scene/scene.h"
 #include "host/spectral/grid.h"
 
@@ -17,8 +18,8 @@ namespace reradiant {
 WavelengthGrid parse_bands_option(const std::string& text);
 /// --model auto|adding|weidlich-wilkie|walk
 Model parse_model_option(const std::string& text);
-/// --wavelengths comb[:N]: N, or 0 for one wavelength a film band.
-int parse_wavelengths_option(const std::string& text);
+/// --wavelengths comb[:N] (without N one wavelength a film band) or hero[:N]
+WavelengthOptions parse_wavelengths_option(const std::string& text);
 
 /// --sample-range A:B with A < B
 SampleRange parse_sample_range_option(const std::string& text);

@@ -10,6 +10,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/parse_options.h"
+#include "tools/tev_preview.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -27,6 +28,7 @@ constexpr const char* render_identity_attribute = "reradiant:renderIdentity";
 
 struct RenderCommand {
     std::filesystem::path scene, output, png;
+    std::string tev;
     RenderOptions render;
     DisplayOptions display;
     std::string model = "auto", wavelengths = "comb", bands, variance, sample_range,
@@ -91,8 +93,9 @@ nlohmann::ordered_json statistics_json(const RenderResult& result, const Device&
           {"count", plan.film.count}}},
         {"model", command.model},
         {"wavelengths",
-         {{"sampling", "comb"},
-          {"count", plan.comb.count},
+         {{"sampling", plan.hero > 0 ? "hero" : "comb"},
+          {"count", plan.hero > 0 ? plan.hero : plan.comb.count},
+          {"cells", plan.comb.count},
           {"from", plan.comb.from_nm},
           {"step", plan.comb.step_nm},
           {"phases", plan.phases},
@@ -133,7 +136,7 @@ void apply_texts(RenderCommand& command, const CommonOptions& common) {
     command.render.seed = common.seed;
     command.render.threads = common.threads;
     command.render.model = parse_model_option(command.model);
-    command.render.wavelengths.comb_count = parse_wavelengths_option(command.wavelengths);
+    command.render.wavelengths = parse_wavelengths_option(command.wavelengths);
     command.render.wavelengths.centred = command.phase == "centre";
     if (command.render.wavelengths.centred && command.render.wavelengths.comb_count > 0)
         throw_input_error({}, "--comb-phase centre needs one wavelength a film band",
@@ -203,17 +206,28 @@ int run_render(RenderCommand command, const CommandContext& context) {
                        command.output.string(), command.render.samples);
         return 0;
     }
+    TevPreview preview(command.tev, command.output.filename().string());
+    RenderObserver show;
+    if (preview.is_open())
+        show = [&preview](const RenderProgress&, const std::function<SpectralImage()>& image) {
+            if (preview.is_open())
+                preview.update(image());
+        };
     catch_interrupts(); // the pass ends and a checkpoint is written
     RenderResult result;
     {
         ProgressBar bar(common.quiet);
-        result = render(scene, device, command.render, [&](const RenderProgress& state) {
-            const double by_samples = static_cast<double>(state.samples) / command.render.samples;
-            const double by_time = state.seconds / command.render.time_seconds;
-            bar.update(std::min(1.0, std::max(by_samples, by_time)),
-                       fmt::format("{} spp, relMSE {:.2g}", state.samples, state.relmse));
-            return !interrupt_requested();
-        });
+        result = render(
+            scene, device, command.render,
+            [&](const RenderProgress& state) {
+                const double by_samples =
+                    static_cast<double>(state.samples) / command.render.samples;
+                const double by_time = state.seconds / command.render.time_seconds;
+                bar.update(std::min(1.0, std::max(by_samples, by_time)),
+                           fmt::format("{} spp, relMSE {:.2g}", state.samples, state.relmse));
+                return !interrupt_requested();
+            },
+            show);
     }
     if (result.interrupted)
         return report_interruption(result, command);
@@ -256,7 +270,8 @@ void add_stopping_options(CLI::App& app, RenderCommand& command) {
 void add_sampling_options(CLI::App& app, RenderCommand& command) {
     app.add_option("--model", command.model,
                    "auto, adding, weidlich-wilkie or walk for every material");
-    app.add_option("--wavelengths", command.wavelengths, "comb or comb:N, N wavelengths a path");
+    app.add_option("--wavelengths", command.wavelengths,
+                   "comb or comb:N, N wavelengths a path; hero or hero:N, N sampled of them");
     app.add_option("--comb-phase", command.phase,
                    "random: anywhere in a band; centre: at the band centres only")
         ->check(CLI::IsMember({"random", "centre"}));
@@ -271,6 +286,7 @@ void add_sampling_options(CLI::App& app, RenderCommand& command) {
 
 void add_display_options(CLI::App& app, RenderCommand& command) {
     app.add_option("--png", command.png, "write the display image too");
+    app.add_option("--tev", command.tev, "HOST:PORT of the viewer tev: shows every pass there");
     app.add_option("--ocio", command.display.ocio_config, "OpenColorIO config");
     app.add_option("--display", command.display.display, "display of the config");
     app.add_option("--view", command.display.view, "view of the display");

@@ -71,6 +71,7 @@ KernelDefines RenderFeatures::defines() const {
     defines.emplace_back("CHUNKS", chunks);
     defines.emplace_back("FILM_CHUNKS", film_chunks);
     defines.emplace_back("LOBES", lobes);
+    defines.emplace_back("HERO", hero);
     defines.emplace_back("WALK_LAYERS", walk_layers);
     return defines;
 }
@@ -79,6 +80,7 @@ std::map<std::string, bool> RenderFeatures::listed() const {
     std::map<std::string, bool> list;
     for (const FeatureBit& bit : feature_bits)
         list[bit.name] = this->*bit.value;
+    list["hero"] = hero > 0;
     return list;
 }
 
@@ -87,6 +89,8 @@ std::vector<std::string> RenderFeatures::left_out() const {
     for (const FeatureBit& bit : feature_bits)
         if (!(this->*bit.value))
             lines.push_back(fmt::format("{}: {}", bit.name, bit.why_off));
+    if (hero == 0)
+        lines.push_back("hero: every path carries all wavelengths");
     return lines;
 }
 

@@ -52,6 +52,7 @@ SampleIdentity sampling_identity(const Scene& scene, const RenderOptions& option
             {"model", model_name(options.model)},
             {"bands", bands_text(options.bands)},
             {"wavelength count", std::to_string(options.wavelengths.comb_count)},
+            {"hero wavelengths", std::to_string(options.wavelengths.hero_count)},
             {"comb phase", options.wavelengths.centred ? "centre" : "random"},
             {"variance per band", options.band_variance ? "on" : "off"},
             {"specialisation", options.all_features ? "off" : "on"}};

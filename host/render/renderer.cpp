@@ -4,6 +4,7 @@
 #include "host/geometry/geometry.h"
 #include "host/render/checkpoint.h"
 #include "host/render/film_sums.h"
+#include "host/render/hero_tables.h"
 #include "host/render/render_identity.h"
 #include "host/render/scene_tables.h"
 #include "host/render/stack_optics.h"
@@ -204,7 +205,8 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
     const std::uint64_t depth = static_cast<std::uint64_t>(scene.integrator.max_depth) + 1;
     const std::uint64_t vertex = sizeof(VertexRecord) + sizeof(RayRecord) +
                                  2 * sizeof(float) * most_deeper_lobes(scene, options.model) +
-                                 (has_colours(scene) ? VERTEX_COLOURS * sizeof(float) : 0);
+                                 (has_colours(scene) ? VERTEX_COLOURS * sizeof(float) : 0) +
+                                 (plan.hero > 0 ? 8 * hero_width(plan.hero) : 0);
     const std::uint64_t paths =
         options.batch_paths *
         (depth * vertex + lanes * 4 + sizeof(RayRecord) + sizeof(HitRecord) + sizeof(PathState));

@@ -1,5 +1,6 @@
 #include "host/render/scene_tables.h"
 
+#include "host/render/hero_tables.h"
 #include "host/render/stack_optics.h"
 #include "host/render/walk_tables.h"
 #include "host/scene/model_choice.h"
@@ -58,6 +59,8 @@ SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, M
     drop_repeats(tables.notes);
     append_surfaces(scene, tables);
     append_lights(scene, plan, tables);
+    if (plan.hero > 0)
+        append_hero(scene, plan, tables);
     return tables;
 }
 

@@ -1,6 +1,7 @@
 #include "host/render/wavefront.h"
 
 #include "host/error.h"
+#include "host/render/hero_tables.h"
 #include "kernels/features.h"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
                      const WavelengthPlan& plan, const WavefrontSettings& settings,
                      BuildStatistics& build)
     : device_(device), geometry_(geometry), scene_(scene), settings_(settings),
-      phases_(plan.phases), lanes_(plan.padded_lanes()),
+      phases_(plan.phases), lanes_(plan.padded_lanes()), seen_lanes_(plan.seen_lanes()),
       film_layout_(film_layout(plan, scene.features.band_variance, scene.features.scatter)),
       pixel_count_(scene.camera.width * scene.camera.height),
       capacity_(batch_capacity(settings, pixel_count_)),
@@ -67,6 +68,11 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         walk_chunks_ = {device, walks ? chunks_a_path * static_cast<std::size_t>(capacity_) : 0};
         walk_chunks_used_ = {device, std::size_t{walks}};
         walk_vertices_ = {device, walks ? slots : 0};
+        const std::size_t sets =
+            plan.hero > 0 ? (slots + capacity_) * static_cast<std::size_t>(hero_width(plan.hero))
+                          : 0;
+        hero_lanes_ = {device, sets};
+        hero_weights_ = {device, sets};
         lobe_weights_ = {device, slots * 2u * static_cast<std::size_t>(scene.features.lobes)};
         radiance_ = {device,
                      static_cast<std::size_t>(capacity_) * static_cast<std::size_t>(lanes_)};
@@ -195,8 +201,10 @@ void Wavefront::gather(const Batch& batch) {
     gather_.bind(radiance_.buffer(), paths_.buffer(), vertices_.buffer(), shadow_rays_.buffer(),
                  lobe_weights_.buffer(), colours_.buffer(), materials_.buffer(), layers_.buffer(),
                  lobes_.buffer(), lights_.buffer(), tables_.buffer(), walk_parts_.buffer(),
-                 walk_chunks_.buffer(), walk_vertices_.buffer(), scene_.image.light, batch.paths(),
-                 capacity_, static_cast<std::uint32_t>(phases_));
+                 walk_chunks_.buffer(), walk_vertices_.buffer(), hero_lanes_.buffer(),
+                 hero_weights_.buffer(), static_cast<std::uint32_t>(seen_lanes_[0]),
+                 static_cast<std::uint32_t>(seen_lanes_[1]), scene_.image.light, batch.paths(),
+                 capacity_, static_cast<std::uint32_t>(phases_), settings_.seed);
     gather_.launch(device_, batch.paths());
     wait_for_kernels(statistics_.gather_seconds);
 }
@@ -237,9 +245,9 @@ void Wavefront::restore_film(const FilmSums& film) const {
 std::size_t Wavefront::device_bytes() const {
     return materials_.bytes() + layers_.bytes() + lobes_.bytes() + surfaces_.bytes() +
            walk_parts_.bytes() + walk_chunks_.bytes() + walk_vertices_.bytes() + textures_.bytes() +
-           colours_.bytes() + lights_.bytes() + tables_.bytes() + rays_.bytes() +
-           shadow_rays_.bytes() + hits_.bytes() + paths_.bytes() + vertices_.bytes() +
-           lobe_weights_.bytes() + radiance_.bytes() + film_sums_.bytes() +
+           hero_lanes_.bytes() + hero_weights_.bytes() + colours_.bytes() + lights_.bytes() +
+           tables_.bytes() + rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() + paths_.bytes() +
+           vertices_.bytes() + lobe_weights_.bytes() + radiance_.bytes() + film_sums_.bytes() +
            film_statistics_.bytes() + film_bands_.bytes() + film_weights_.bytes() +
            y_weights_.bytes();
 }

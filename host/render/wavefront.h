@@ -71,6 +71,7 @@ private:
     const SceneTables& scene_;
     WavefrontSettings settings_;
     int phases_, lanes_;
+    std::array<int, 2> seen_lanes_;
     FilmLayout film_layout_;
     std::uint32_t pixel_count_, capacity_, rounds_;
     bool samples_lights_;
@@ -87,6 +88,8 @@ private:
     DeviceArray<WalkChunk> walk_chunks_;
     DeviceArray<std::uint32_t> walk_chunks_used_;
     DeviceArray<WalkVertexRecord> walk_vertices_;
+    DeviceArray<std::uint32_t> hero_lanes_; ///< [depth][path][hero_width]
+    DeviceArray<float> hero_weights_;
     DeviceArray<float> tables_, colours_;
     DeviceArray<RayRecord> rays_, shadow_rays_;
     DeviceArray<HitRecord> hits_;

@@ -182,6 +182,17 @@ bool WavelengthPlan::stands_apart(const SpectralLine& line) const {
     });
 }
 
+std::array<int, 2> WavelengthPlan::seen_lanes() const {
+    int first = static_cast<int>(lanes.size()), last = -1;
+    for (int lane = 0; lane < static_cast<int>(lanes.size()); ++lane)
+        for (int phase = 0; phase < phases; ++phase)
+            if (deposit(lane, phase).band >= 0) {
+                first = std::min(first, lane);
+                last = lane;
+            }
+    return last < 0 ? std::array<int, 2>{0, 1} : std::array<int, 2>{first, last - first + 1};
+}
+
 bool WavelengthPlan::deposits_are_fixed() const {
     for (int lane = 0; lane < static_cast<int>(lanes.size()); ++lane)
         for (int phase = 0; phase < phases; ++phase)
@@ -208,6 +219,7 @@ WavelengthPlan plan_wavelengths(const Scene& scene, const WavelengthGrid& film,
         plan.comb = trimmed(scene, plan.comb, plan.left_out);
     if (options.comb_count > 0)
         plan.comb = recut(plan.comb, options.comb_count);
+    plan.hero = options.hero_count;
     plan.phases = options.centred ? 1 : phases_for(plan.comb.step_nm, film.step_nm);
     const std::vector<Lane> lines = line_lanes(scene, plan.comb, film);
     auto line = lines.begin();

@@ -2,6 +2,7 @@
 
 #include "host/scene/scene.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct WavelengthPlan {
     WavelengthGrid film;
     WavelengthGrid comb;
     int phases = 1; ///< a power of two; 1: band centres only
+    int hero = 0;   ///< wavelengths that a path samples of the lanes (kernels/hero.h); 0: all
     std::vector<Lane> lanes;
     std::vector<std::string> left_out; ///< wavelengths not sampled, and why
 
@@ -40,12 +42,17 @@ struct WavelengthPlan {
     Deposit deposit(int lane, int phase) const;
     /// True for a line that has lanes of its own (then it is not on the comb).
     bool stands_apart(const SpectralLine& line) const;
+    /// First lane that adds to a film band at some phase, and how many do from there on.
+    std::array<int, 2> seen_lanes() const;
     /// True when every lane adds to one band alone, the same whatever the phase.
     bool deposits_are_fixed() const;
 };
 
+constexpr int default_hero_wavelengths = 4, most_hero_wavelengths = 16;
+
 struct WavelengthOptions {
     int comb_count = 0;    ///< 0: as many cells as film bands in the sampled range
+    int hero_count = 0;    ///< 0: comb, else `hero` with so many, at most most_hero_wavelengths
     bool centred = false;  ///< one phase at the centres instead of random phases
     bool keep_all = false; ///< sample bands that cannot matter, too
 };

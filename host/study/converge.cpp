@@ -26,6 +26,7 @@ RenderOptions method_options(const ConvergeOptions& options, const RenderMethod&
     RenderOptions render = options.render;
     render.model = method.model;
     render.wavelengths.comb_count = method.comb_count;
+    render.wavelengths.hero_count = method.hero_count;
     render.samples = unlimited_samples;
     render.time_seconds = options.time_seconds;
     render.seed = seed;
@@ -34,9 +35,10 @@ RenderOptions method_options(const ConvergeOptions& options, const RenderMethod&
 
 /// Refuses a model that some material cannot be rendered by. The coarsest comb does for that.
 void check_methods(const Scene& scene, const ConvergeOptions& options) {
-    const WavelengthPlan plan =
+    WavelengthPlan plan =
         plan_wavelengths(scene, options.render.bands.value_or(film_bands(scene)), {1});
     for (const RenderMethod& method : options.methods) {
+        plan.hero = method.hero_count;
         try {
             build_scene_tables(scene, plan, method.model, false);
         } catch (const Error& error) {

@@ -1,6 +1,7 @@
 #include "host/study/render_method.h"
 
 #include "host/error.h"
+#include "host/render/wavelength_plan.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +16,7 @@ namespace {
 constexpr int most_comb_wavelengths = 4096;
 constexpr const char* remedy =
     "a method is a model (auto, adding, weidlich-wilkie, walk), a wavelength sampling (comb or "
-    "comb:N with N from 1 to 4096), or both as MODEL+comb:N";
+    "comb:N with N from 1 to 4096, hero or hero:N with N from 1 to 16), or both as MODEL+comb:N";
 
 std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts;
@@ -31,17 +32,19 @@ std::vector<std::string> split(const std::string& text, char separator) {
     throw std::invalid_argument(fmt::format("'{}' {}; {}", method, why, remedy));
 }
 
-bool is_comb(const std::string& part) {
-    return part == "comb" || part.starts_with("comb:");
+bool is_sampling(const std::string& part, const std::string& name) {
+    return part == name || part.starts_with(name + ":");
 }
 
-int comb_count(const std::string& method, const std::string& part) {
-    if (part == "comb")
-        return 0;
+/// N of NAME:N, or `otherwise` without it.
+int wavelength_count(const std::string& method, const std::string& part, const std::string& name,
+                     int otherwise, int most) {
+    if (part == name)
+        return otherwise;
     int count = 0;
     const char* const end = part.data() + part.size();
-    const auto [stop, code] = std::from_chars(part.data() + 5, end, count);
-    if (code != std::errc{} || stop != end || count < 1 || count > most_comb_wavelengths)
+    const auto [stop, code] = std::from_chars(part.data() + name.size() + 1, end, count);
+    if (code != std::errc{} || stop != end || count < 1 || count > most)
         refuse(method, "has no valid count of wavelengths");
     return count;
 }
@@ -64,16 +67,19 @@ std::string RenderMethod::file_stem() const {
 
 RenderMethod parse_method(const std::string& text) {
     RenderMethod method{text};
-    bool has_model = false, has_comb = false;
+    bool has_model = false, has_sampling = false;
     for (const std::string& part : split(text, '+')) {
-        const bool comb = is_comb(part);
+        const bool comb = is_sampling(part, "comb"), hero = is_sampling(part, "hero");
         if (comb)
-            method.comb_count = comb_count(text, part);
+            method.comb_count = wavelength_count(text, part, "comb", 0, most_comb_wavelengths);
+        else if (hero)
+            method.hero_count = wavelength_count(text, part, "hero", default_hero_wavelengths,
+                                                 most_hero_wavelengths);
         else
             method.model = model_of(text, part);
-        bool& given = comb ? has_comb : has_model;
+        bool& given = comb || hero ? has_sampling : has_model;
         if (given)
-            refuse(text, comb ? "names two wavelength samplings" : "names two models");
+            refuse(text, comb || hero ? "names two wavelength samplings" : "names two models");
         given = true;
     }
     return method;

@@ -12,11 +12,12 @@ struct RenderMethod {
     std::string name; ///< as it was asked for
     Model model = Model::Auto;
     int comb_count = 0; ///< wavelengths a path; 0: one a film band
+    int hero_count = 0; ///< sampled of them; 0: none, the path carries all
 
     std::string file_stem() const; ///< the name, fit for a file
 };
 
-/// A model, a wavelength sampling, or both joined by a plus: "adding", "comb:16",
+/// A model, a wavelength sampling, or both joined by a plus: "adding", "comb:16", "hero:8",
 /// "weidlich-wilkie+comb". std::invalid_argument says which part is not known, and what is.
 RenderMethod parse_method(const std::string& text);
 

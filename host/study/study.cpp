@@ -45,8 +45,8 @@ std::string identity_of(const Study& study, const std::vector<ChosenValue>& valu
         text << ' ' << static_cast<int>(chosen.sweep->kind)
              << fmt::format(" {}", chosen.sweep->path) << toml::toml_formatter(chosen.value->boxed);
     if (const auto& r = study.rendering)
-        text << fmt::format(" render {} {} {} {}", r->samples, static_cast<int>(r->method.model),
-                            r->method.comb_count, r->exposure_ev);
+        text << fmt::format(" render {} {} {} {} {}", r->samples, static_cast<int>(r->method.model),
+                            r->method.comb_count, r->method.hero_count, r->exposure_ev);
     if (const auto& m = study.measuring)
         text << fmt::format(" measure {} {} {} {} {} {}", m->samples, m->theta_i_deg,
                             m->theta_o_deg, m->phi_deg, m->illuminants, static_cast<int>(m->model));
@@ -126,6 +126,7 @@ private:
         render.samples = study_.rendering->samples;
         render.model = study_.rendering->method.model;
         render.wavelengths.comb_count = study_.rendering->method.comb_count;
+        render.wavelengths.hero_count = study_.rendering->method.hero_count;
         RenderResult rendered =
             reradiant::render(scene, *device_, render, [&](const RenderProgress& state) {
                 const double share = static_cast<double>(state.samples) / render.samples;

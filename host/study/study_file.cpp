@@ -72,6 +72,7 @@ private:
             const RenderMethod given = parse_method(reader.text(key));
             method.model = given.model == Model::Auto ? method.model : given.model;
             method.comb_count = std::max(method.comb_count, given.comb_count);
+            method.hero_count = std::max(method.hero_count, given.hero_count);
         } catch (const std::invalid_argument& error) {
             reader.fail(key, error.what());
         }

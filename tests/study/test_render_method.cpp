@@ -24,16 +24,18 @@ TEST(RenderMethod, PartsAreReadInAnyOrder) {
     EXPECT_EQ(both.comb_count, 16);
     EXPECT_EQ(parse_method("comb").model, Model::Auto);
     EXPECT_EQ(parse_method("adding").comb_count, 0);
+    EXPECT_EQ(parse_method("hero").hero_count, 4);
+    EXPECT_EQ(parse_method("weidlich-wilkie+hero:16").hero_count, 16);
     EXPECT_EQ(parse_methods("adding,walk,comb:8").size(), 3u);
 }
 
 TEST(RenderMethod, WhatIsNotKnownIsNamed) {
     EXPECT_NE(refusal("adding,magic").find("--methods: 'magic'"), std::string::npos);
-    EXPECT_NE(refusal("adding+hero").find("'hero'"), std::string::npos);
+    EXPECT_NE(refusal("adding+heron").find("'heron'"), std::string::npos);
     EXPECT_NE(refusal("adding+walk").find("two models"), std::string::npos);
     EXPECT_NE(refusal("adding,adding").find("twice"), std::string::npos);
     for (const char* text : {"", "adding,", "comb:0", "comb:-1", "comb:4097", "comb:", "comb:8x",
-                             "adding+", "comb:8+comb:9"})
+                             "adding+", "comb:8+comb:9", "hero:0", "hero:17", "comb+hero"})
         EXPECT_NE(refusal(text).find("--methods"), std::string::npos) << text;
 }
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "host/film/spectral_image.h"
+
+#include <string>
+
+namespace reradiant {
+
+/// Shows an image in the viewer tev (Thomas Mueller) while it is rendered, by the viewer's TCP
+/// protocol: one message creates the image, each update sends its linear sRGB in tiles. Whatever
+/// fails is warned about once, and nothing is sent from there on: a preview never ends a render.
+class TevPreview {
+public:
+    /// address: HOST:PORT; empty: nothing is shown. Input Error when it is not of that form.
+    TevPreview(const std::string& address, std::string name);
+    ~TevPreview();
+    TevPreview(const TevPreview&) = delete;
+    TevPreview& operator=(const TevPreview&) = delete;
+
+    bool is_open() const { return socket_ >= 0; }
+    /// The first image is created in the viewer, too.
+    void update(const SpectralImage& image);
+
+private:
+    void connect_to(const std::string& host, const std::string& port);
+    bool send(const std::string& message);
+    void give_up(const std::string& why);
+
+    std::string name_, address_;
+    int socket_ = -1;
+    bool created_ = false;
+};
+
+} // namespace reradiant
