@@ -84,7 +84,7 @@ Indices infeasible(const Vector& y, const Vector& slope, const std::vector<bool>
 std::optional<Vector> minimise_quadratic(const Quadratic& quadratic,
                                          const std::vector<bool>& bounded, bool dense,
                                          std::vector<bool>& free) {
-    constexpr int most_rounds = 24;
+    constexpr int most_rounds = 12;
     std::size_t least = free.size() + 1;
     int patience = 3; // full exchanges that may pass without progress
     for (int round = 0; round < most_rounds; ++round) {

@@ -18,7 +18,7 @@ struct Quadratic {
 /// Pires 1994): all wrong signs are exchanged at once, and singly (Murty 1974, which ends) when
 /// that does not lessen them. `free` holds the first guess of what is not at zero and receives the
 /// answer. `dense`: H is best factorised as a full matrix. Nothing when H is not positive definite
-/// to rounding, or so nearly singular that 24 exchanges do not end: damp it more.
+/// to rounding, or so nearly singular that 12 exchanges do not end: damp it more.
 std::optional<Eigen::VectorXd> minimise_quadratic(const Quadratic& quadratic,
                                                   const std::vector<bool>& bounded, bool dense,
                                                   std::vector<bool>& free);

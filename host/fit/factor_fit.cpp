@@ -13,7 +13,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double spacings_in_steps[] = {1.5, 2.0, 3.0};
 /// Steps that each start is given at first: nearly all end in half as many, and one that does not
 /// is rarely the best.
-constexpr int first_steps = 100;
+constexpr int first_steps = 80;
 
 /// Values of a curve at bands that no used entry depends on, from their neighbours on both sides.
 void bridge_gaps(const Eigen::ArrayXd& used, Eigen::MatrixXd& curves) {
