@@ -66,8 +66,10 @@ TEST_P(MeasuredFit, FactorsOfRankThreeMeetTheBar) {
     const FitResult three = fit(FitModel::Factors, 3, 0.0);
     EXPECT_LE(three.bytes, 1080u);
     EXPECT_LE(three.relative_rmse, GetParam().rank_3 + rounding);
-    if (is_full_run()) // 1.0 to 2.6 by what else the machine does: the bar is for a quiet one
+    // 1.0 to 2.6 by what else the machine does: the bar is for a quiet one.
+    if (is_full_run()) {
         EXPECT_LE(three.seconds, 2.0);
+    }
 }
 
 TEST_P(MeasuredFit, SmoothFactorsOfRankOneLoseLittle) {
