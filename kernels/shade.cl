@@ -424,6 +424,7 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
     if (stack.record.walk != NO_INDEX) {
         Walk walk;
         walk.stack.parts = walk_parts + stack.record.walk;
+        walk.stack.tables = tables;
         walk.stack.count = stack.record.layer_count;
         walk.stack.sigma = stack.record.sigma;
         walk.writer = walk_writer(walk_chunks, walk_chunks_used, walk_capacity);

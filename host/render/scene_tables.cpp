@@ -38,7 +38,8 @@ SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, M
         tables.features = RenderFeatures::all();
     std::vector<Model> models;
     for (const Material& material : scene.materials) {
-        const ModelChoice choice = choose_model(material, model, ModelUse::Render);
+        const ModelChoice choice =
+            choose_model(material, model, plan.hero > 0 ? ModelUse::RenderHero : ModelUse::Render);
         models.push_back(choice.model);
         tables.notes.push_back(model_note(material, choice));
         if (choice.model != Model::Walk)

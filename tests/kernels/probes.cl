@@ -146,7 +146,7 @@ __kernel void probe_dense(__global const float* in, __global float* out, uint co
 __kernel void probe_walk_facets(__global const float* in, __global float* out, uint count) {
     ITEM;
     __global const float* p = in + 11 * i;
-    const WalkSurface surface = {(int)p[0], p[1], p[2], 1, 0};
+    const WalkSurface surface = {(int)p[0], p[1], p[2], 1, 0, 0};
     const Vec3 v = vec3(p[3], p[4], p[5]), w = vec3(p[6], p[7], p[8]);
     out[5 * i] = walk_visible_area(surface, v);
     out[5 * i + 1] = walk_reflection_density(surface, v, w);
