@@ -31,6 +31,10 @@ void drop_repeats(std::vector<std::string>& notes) {
 
 } // namespace
 
+ModelUse use_in(const WavelengthPlan& plan) {
+    return plan.hero > 0 ? ModelUse::RenderHero : ModelUse::Render;
+}
+
 SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, Model model,
                                bool keep_all) {
     SceneTables tables;
@@ -39,7 +43,7 @@ SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, M
     std::vector<Model> models;
     for (const Material& material : scene.materials) {
         const ModelChoice choice =
-            choose_model(material, model, plan.hero > 0 ? ModelUse::RenderHero : ModelUse::Render);
+            choose_model(material, model, use_in(plan));
         models.push_back(choice.model);
         tables.notes.push_back(model_note(material, choice));
         if (choice.model != Model::Walk)

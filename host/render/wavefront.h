@@ -22,6 +22,9 @@ struct WavefrontStatistics {
     std::uint64_t rays = 0; ///< camera, path and shadow rays that were traced
 };
 
+/// Chunks of events that walks have at first; a batch that needs more gets more.
+inline constexpr std::size_t walk_chunks_a_path = 4;
+
 struct WavefrontSettings {
     std::uint32_t max_depth = 8, min_depth = 3;
     std::uint32_t seed = 0;
