@@ -241,7 +241,7 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
     Wavefront wavefront(device, geometry, tables, result.plan,
                         {static_cast<std::uint32_t>(scene.integrator.max_depth),
                          static_cast<std::uint32_t>(scene.integrator.min_depth), options.seed,
-                         options.batch_paths, options.threads},
+                         options.batch_paths, options.threads, options.on_rays},
                         result.build);
     result.setup_seconds = seconds_since(start) - result.build.seconds;
 

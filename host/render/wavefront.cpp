@@ -160,6 +160,8 @@ bool Wavefront::intersect(const Batch& batch, std::uint32_t depth) {
     const auto hits = hits_.map(CL_MAP_WRITE, 0, batch.paths());
     const auto active = std::count_if(rays.span().begin(), rays.span().end(),
                                       [](const RayRecord& ray) { return ray.t_far >= 0.0f; });
+    if (settings_.on_rays)
+        settings_.on_rays(rays.span(), false, depth == 0);
     if (active > 0)
         geometry_.intersect(rays.span(), hits.span(), depth == 0, settings_.threads);
     statistics_.rays += static_cast<std::uint64_t>(active);
@@ -188,6 +190,8 @@ void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
                                        static_cast<std::size_t>(depth) * capacity_, batch.paths());
     const auto active = std::count_if(rays.span().begin(), rays.span().end(),
                                       [](const RayRecord& ray) { return ray.t_far >= 0.0f; });
+    if (settings_.on_rays)
+        settings_.on_rays(rays.span(), true, false);
     if (active > 0)
         geometry_.occlude(rays.span(), settings_.threads);
     statistics_.rays += static_cast<std::uint64_t>(active);

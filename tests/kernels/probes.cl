@@ -10,6 +10,7 @@
 #include "kernels/random.h"
 #include "kernels/reradiation.h"
 #include "kernels/sampling.h"
+#include "kernels/sequence.h"
 #include "kernels/shared.h"
 #include "kernels/table.h"
 #include "kernels/walk_facets.h"
@@ -55,6 +56,15 @@ __kernel void probe_table(__global const float* in, __global float* out, uint co
 __kernel void probe_random(__global const float* in, __global float* out, uint count) {
     ITEM;
     const Random4 r = random_4(i, i * 7u + 1u, i % 13u, 42u);
+    out[4 * i] = r.a;
+    out[4 * i + 1] = r.b;
+    out[4 * i + 2] = r.c;
+    out[4 * i + 3] = r.d;
+}
+
+__kernel void probe_sequence(__global const float* in, __global float* out, uint count) {
+    ITEM;
+    const Random4 r = sequence_4(i / 7u, i, i % 9u, 42u);
     out[4 * i] = r.a;
     out[4 * i + 1] = r.b;
     out[4 * i + 2] = r.c;
