@@ -217,13 +217,12 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
     const std::uint64_t image = pixels * (static_cast<std::uint64_t>(plan.film.count) + 5) * 4;
     const std::uint64_t depth = static_cast<std::uint64_t>(scene.integrator.max_depth) + 1;
     const ModelBytes models = model_bytes(scene, plan, options.model);
-    const std::uint64_t vertex = sizeof(VertexRecord) + sizeof(RayRecord) +
-                                 models.vertex +
+    const std::uint64_t vertex = sizeof(VertexRecord) + sizeof(RayRecord) + models.vertex +
                                  (has_colours(scene) ? VERTEX_COLOURS * sizeof(float) : 0) +
                                  (plan.hero > 0 ? 8 * hero_width(plan.hero) : 0);
     const std::uint64_t paths =
-        options.batch_paths *
-        (depth * vertex + models.path + lanes * 4 + sizeof(RayRecord) + sizeof(HitRecord) + sizeof(PathState));
+        options.batch_paths * (depth * vertex + models.path + lanes * 4 + sizeof(RayRecord) +
+                               sizeof(HitRecord) + sizeof(PathState));
     // The film is mapped where it is; the image is held once more while it is written.
     return film + 2 * image + paths;
 }

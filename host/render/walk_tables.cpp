@@ -21,9 +21,10 @@ namespace {
 /// where a lane's is smaller still, weights bounded by WALK_REFERENCES make up for it.
 constexpr double least_reference = 1e-3;
 
-void check_material(const Material& material, const std::string& file) {
+void check_material(const Material& material) {
     if (const std::optional<std::string> refusal = device_walk_refusal(material))
-        throw_input_error({file}, fmt::format("material '{}': {}", material.name, *refusal),
+        throw_input_error(material.position,
+                          fmt::format("material '{}': {}", material.name, *refusal),
                           "use weidlich-wilkie or adding, or measure the material by walk");
 }
 
@@ -218,8 +219,8 @@ private:
 } // namespace
 
 void append_walk_material(const Material& material, const WavelengthPlan& plan,
-                          const std::string& file, SceneTables& tables) {
-    check_material(material, file);
+                          SceneTables& tables) {
+    check_material(material);
     WalkTables(material, plan, tables).append();
 }
 

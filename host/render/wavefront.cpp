@@ -62,7 +62,8 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         const bool colours = scene.features.environment_image || scene.features.reflectance_image;
         colours_ = {device, colours ? slots * VERTEX_COLOURS : 0};
         const bool walks = scene.features.walk;
-        walk_chunks_ = {device, walks ? walk_chunks_a_path * static_cast<std::size_t>(capacity_) : 0};
+        walk_chunks_ = {device,
+                        walks ? walk_chunks_a_path * static_cast<std::size_t>(capacity_) : 0};
         walk_chunks_used_ = {device, std::size_t{walks}};
         walk_vertices_ = {device, walks ? slots : 0};
         const std::size_t sets =

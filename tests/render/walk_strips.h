@@ -75,10 +75,10 @@ inline std::vector<Stack> all_stacks() {
 }
 
 /// Materials side by side on the plane y = 0, one strip of square tiles each, all seen under
-/// view_deg by a camera whose angle is so narrow that the direction hardly varies.
-inline Scene strips_scene(const std::vector<Material>& materials) {
+/// `angle` by a camera whose angle is so narrow that the direction hardly varies.
+inline Scene strips_scene(const std::vector<Material>& materials, double angle = view_deg) {
     const int count = static_cast<int>(materials.size());
-    Scene scene = plane_scene(materials.front(), view_deg, strip_pixels * count, strip_pixels);
+    Scene scene = plane_scene(materials.front(), angle, strip_pixels * count, strip_pixels);
     scene.camera.up = {0, 1, 0}; // the film's rows then run along -z
     scene.materials = materials;
     scene.shapes.resize(materials.size());
