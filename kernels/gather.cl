@@ -509,6 +509,8 @@ Lanes walk_event_lanes(const GatherContext* context, WalkEvent event, uint refer
 #if FEATURE_TABULATED_REFLECTANCE
     if (kind == WALK_REFLECT || kind == WALK_LIGHT_REFLECT)
         return facet_reflectance(context, part.reflectance, event.value, chunk);
+    if (kind == WALK_BOUNCE || kind == WALK_LIGHT_BOUNCE)
+        return path_row(context, context->tables + part.bounced + context->phase * LANES, chunk);
 #endif
     const float sampled = kind == WALK_LIGHT_PASS ? 0.0f : part.references[reference];
     return walk_slab_lanes(context, part, sampled, event.value, kind == WALK_SCATTER, chunk);

@@ -2,7 +2,7 @@
 #include "kernels/camera.h"
 #include "kernels/features.h"
 #include "kernels/portable.h"
-#include "kernels/random.h"
+#include "kernels/sequence.h"
 #include "kernels/shared.h"
 #include "kernels/wavelength.h"
 
@@ -14,9 +14,9 @@ __kernel void generate(__global RayRecord* rays, __global PathState* paths, Came
         return;
     const uint pixel = first_pixel + path / samples;
     const uint sample = first_sample + path % samples;
-    const Random4 u = random_4(pixel, sample, 0u, seed);
-    const CameraRay camera_space = camera_ray(camera, (real)(pixel % camera.width) + u.a,
-                                              (real)(pixel / camera.width) + u.b, u.c, u.d);
+    const Random4 u = sequence_4(pixel, sample, 0u, seed);
+    const CameraRay camera_space = camera_ray(camera, (real)(pixel % camera.width) + u.b,
+                                              (real)(pixel / camera.width) + u.c, u.a, u.d);
     RayRecord ray;
     ray.origin_x = camera_space.origin.x;
     ray.origin_y = camera_space.origin.y;

@@ -14,12 +14,6 @@
 #include "kernels/sampling.h"
 #include "kernels/shared.h"
 
-#ifdef __OPENCL_VERSION__
-#define GLOBAL_CONST __global const
-#else
-#define GLOBAL_CONST const
-#endif
-
 KERNELS_BEGIN
 
 #define CHOICES (3 + LOBES)

@@ -9,6 +9,7 @@
 typedef float real;
 #define REAL(x) x##f
 #define DEVICE_FUNCTION
+#define GLOBAL_CONST __global const
 #define KERNELS_BEGIN
 #define KERNELS_END
 
@@ -19,6 +20,7 @@ typedef float real;
 
 #define REAL(x) real(x)
 #define DEVICE_FUNCTION inline
+#define GLOBAL_CONST const
 #define KERNELS_BEGIN namespace reradiant::kernels {
 #define KERNELS_END }
 

@@ -16,30 +16,41 @@ DEVICE_FUNCTION real random_unit(uint bits) {
     return (real)(bits >> 8) * REAL(5.9604644775390625e-8);
 }
 
-/// Four independent numbers in [0, 1) for one dimension block. PCG4D: Jarzynski and Olano, "Hash
-/// Functions for GPU Rendering", JCGT 9(3), 2020, listing of pcg4d.
+typedef struct {
+    uint x, y, z, w;
+} RandomWords;
+
+/// Four words hashed from four: PCG4D, Jarzynski and Olano, "Hash Functions for GPU Rendering",
+/// JCGT 9(3), 2020, listing of pcg4d.
+DEVICE_FUNCTION RandomWords random_words(uint a, uint b, uint c, uint d) {
+    RandomWords r;
+    r.x = a * 1664525u + 1013904223u;
+    r.y = b * 1664525u + 1013904223u;
+    r.z = c * 1664525u + 1013904223u;
+    r.w = d * 1664525u + 1013904223u;
+    r.x += r.y * r.w;
+    r.y += r.z * r.x;
+    r.z += r.x * r.y;
+    r.w += r.y * r.z;
+    r.x ^= r.x >> 16;
+    r.y ^= r.y >> 16;
+    r.z ^= r.z >> 16;
+    r.w ^= r.w >> 16;
+    r.x += r.y * r.w;
+    r.y += r.z * r.x;
+    r.z += r.x * r.y;
+    r.w += r.y * r.z;
+    return r;
+}
+
+/// Four independent numbers in [0, 1) for one dimension block.
 DEVICE_FUNCTION Random4 random_4(uint pixel, uint sample, uint dimension, uint seed) {
-    uint x = pixel * 1664525u + 1013904223u;
-    uint y = sample * 1664525u + 1013904223u;
-    uint z = dimension * 1664525u + 1013904223u;
-    uint w = seed * 1664525u + 1013904223u;
-    x += y * w;
-    y += z * x;
-    z += x * y;
-    w += y * z;
-    x ^= x >> 16;
-    y ^= y >> 16;
-    z ^= z >> 16;
-    w ^= w >> 16;
-    x += y * w;
-    y += z * x;
-    z += x * y;
-    w += y * z;
+    const RandomWords words = random_words(pixel, sample, dimension, seed);
     Random4 r;
-    r.a = random_unit(x);
-    r.b = random_unit(y);
-    r.c = random_unit(z);
-    r.d = random_unit(w);
+    r.a = random_unit(words.x);
+    r.b = random_unit(words.y);
+    r.c = random_unit(words.z);
+    r.d = random_unit(words.w);
     return r;
 }
 

@@ -7,6 +7,7 @@
 #include "kernels/portable.h"
 #include "kernels/random.h"
 #include "kernels/sampling.h"
+#include "kernels/sequence.h"
 #include "kernels/shared.h"
 #include "kernels/texture.h"
 #if FEATURE_WALK
@@ -32,6 +33,15 @@ typedef struct {
     uint light_count;
     uint environment; ///< light of a constant environment, or NO_INDEX
 } ShadeScene;
+
+/// Dimension blocks of a path that come from the sequence: the camera's, and light and direction at
+/// its first vertices. Later ones are smoothed by those before them and gain nothing measurable.
+#define SEQUENCE_DIMENSIONS 7u
+
+Random4 path_numbers(PathState path, uint dimension, uint seed) {
+    return dimension < SEQUENCE_DIMENSIONS ? sequence_4(path.pixel, path.sample, dimension, seed)
+                                           : random_4(path.pixel, path.sample, dimension, seed);
+}
 
 /// Origin moved off the surface to the side of `direction`, beyond the position's error bound
 /// (after Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th ed., section 6.8.6).
@@ -187,13 +197,25 @@ LightSample sample_environment(const ShadeScene* scene, real u1, real u2, __glob
 #endif
 
 #if FEATURE_LIGHT_SAMPLING
+/// The first light whose cumulative probability is above u; the last one where rounding leaves
+/// none.
+uint choose_light(const ShadeScene* scene, real u) {
+    uint low = 0u, high = scene->light_count - 1u;
+    while (low < high) {
+        const uint middle = (low + high) / 2u;
+        if (u < scene->lights[middle].cumulative)
+            high = middle;
+        else
+            low = middle + 1u;
+    }
+    return low;
+}
+
 /// A direction to one light, chosen by selection probability; weight 0 when the light cannot
 /// contribute. *wi: the direction in the local frame.
 LightSample light_from_here(const ShadeScene* scene, SurfacePoint point, Random4 u, uint* chosen,
                             Vec3* wi, __global float* colour) {
-    *chosen = 0u;
-    while (*chosen + 1u < scene->light_count && u.a >= scene->lights[*chosen].cumulative)
-        ++*chosen;
+    *chosen = choose_light(scene, u.a);
     const LightRecord light = scene->lights[*chosen];
     LightSample sample;
 #if FEATURE_ENVIRONMENT_IMAGE
@@ -417,13 +439,14 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
     }
 #endif
 
-    const Random4 u_light = random_4(state.pixel, state.sample, 2u * depth + 1u, seed);
-    const Random4 u = random_4(state.pixel, state.sample, 2u * depth + 2u, seed);
+    const Random4 u_light = path_numbers(state, 2u * depth + 1u, seed);
+    const Random4 u = path_numbers(state, 2u * depth + 2u, seed);
     state.vertex_count = depth + 1u;
 #if FEATURE_WALK
     if (stack.record.walk != NO_INDEX) {
         Walk walk;
         walk.stack.parts = walk_parts + stack.record.walk;
+        walk.stack.tables = tables;
         walk.stack.count = stack.record.layer_count;
         walk.stack.sigma = stack.record.sigma;
         walk.writer = walk_writer(walk_chunks, walk_chunks_used, walk_capacity);

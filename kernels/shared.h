@@ -192,22 +192,27 @@ ASSERT_SIZE(MaterialRecord, 100);
 /// Extinctions that distances in a scattering slab are sampled with (walk.h).
 #define WALK_REFERENCES 4
 
-/// A part of a stack that is walked through: an interface with the slab beneath it, or, as the last
-/// one, the substrate (of which only alpha and what follows it up to `reflectance` is used).
+/// A part of a stack that is walked through: an interface with the slab beneath it; then the
+/// substrate, then the sheets of flakes (of both only alpha and what follows it up to `bounced` is
+/// used).
 typedef struct {
     shared_float eta, ior; ///< IOR below over IOR above; IOR below
     shared_float alpha;    ///< 0: smooth
     shared_uint distribution;
     shared_uint multiple;     ///< 1: light between facets is followed
     shared_float albedo;      ///< substrate, or of scattering: guess for roulette, mean over lanes
+    shared_uint cavities;     ///< blinn, multiple: the table of walk_cavities.h
     shared_uint reflectance;  ///< conductor: [phase][node][lane] over the cosine at the facet
+    shared_uint bounced;      ///< with cavities: [phase][lane], kept of what is given back
     shared_uint extinction;   ///< [phase][lane], optical depth at normal passage; NO_INDEX: clear
     shared_uint scattering;   ///< [phase][lane], its scattering part; NO_INDEX: none
     shared_float anisotropy;  ///< mean cosine of scattering
     shared_float least_depth; ///< of absorption over all lanes, for roulette
     shared_float references[WALK_REFERENCES];
+    shared_uint flakes;    ///< at the slab's end: index of their part in the stack; NO_INDEX: none
+    shared_float coverage; ///< of the flakes, share of the area
 } WalkPartRecord;
-ASSERT_SIZE(WalkPartRecord, 60);
+ASSERT_SIZE(WalkPartRecord, 76);
 
 /// One step of a recorded walk: a kind in the upper 8 bits, an index below, and a number.
 typedef struct {

@@ -97,7 +97,7 @@ int walk_survives(Walk* walk) {
 int walk_meets_interface(Walk* walk) {
     const uint k = walk_interface_ahead(walk->at);
     const int down = walk->at.down;
-    const WalkSurface surface = walk_surface(walk->stack.parts[k], !down);
+    const WalkSurface surface = walk_surface(walk->stack, k, !down);
     const WalkArrival* above = walk->arrivals + WALK_AT_INTERFACE(k, 1);
     const WalkArrival* below = walk->arrivals + WALK_AT_INTERFACE(k, 0);
     const WalkArrival* same = down ? above : below;
@@ -145,52 +145,87 @@ int walk_meets_diffuse(Walk* walk) {
 }
 
 #if FEATURE_TABULATED_REFLECTANCE
+/// A rough conductor (substrate or flake) that the walk meets: its part, and the light there.
+typedef struct {
+    WalkSurface surface;
+    uint part;
+    const WalkArrival* light;
+} WalkMirror;
+
 /// A facet of a conductor reflects into the light's direction.
-void walk_connect_by_facet(Walk* walk, Vec3 v, float density) {
-    const WalkArrival* light = walk->arrivals + WALK_AT_SUBSTRATE;
-    if (walk_connect(walk, light, density))
-        walk_write(&walk->writer, WALK_CODE(WALK_LIGHT_REFLECT, walk->stack.count),
-                   vec3_dot(v, walk_half_reflected(v, light->v)));
+void walk_connect_by_facet(Walk* walk, WalkMirror mirror, Vec3 v, float density) {
+    if (walk_connect(walk, mirror.light, density))
+        walk_write(&walk->writer, WALK_CODE(WALK_LIGHT_REFLECT, mirror.part),
+                   vec3_dot(v, walk_half_reflected(v, mirror.light->v)));
 }
 
-void walk_reflect_by_facet(Walk* walk, float cosine) {
-    walk_write(&walk->writer, WALK_CODE(WALK_REFLECT, walk->stack.count), cosine);
-    walk->expected *= walk->stack.parts[walk->stack.count].albedo;
+void walk_reflect_by_facet(Walk* walk, uint part, float cosine) {
+    walk_write(&walk->writer, WALK_CODE(WALK_REFLECT, part), cosine);
+    walk->expected *= walk->stack.parts[part].albedo;
 }
 
-/// One facet of a rough conductor.
-int walk_single_conductor(Walk* walk, WalkSurface surface, WalkDeparture* departure) {
-    const Vec3 v = walk->at.v;
-    const WalkArrival* light = walk->arrivals + WALK_AT_SUBSTRATE;
-    if (light->fluence > 0.0f)
+void walk_connect_one_facet(Walk* walk, WalkMirror mirror) {
+    const Vec3 v = walk->at.v, l = mirror.light->v;
+    if (mirror.light->fluence > 0.0f)
         walk_connect_by_facet(
-            walk, v,
-            light->v.z * microfacet_reflection(surface.distribution, surface.alpha, v, light->v));
+            walk, mirror, v,
+            l.z * microfacet_reflection(mirror.surface.distribution, mirror.surface.alpha, v, l));
+}
+
+int walk_reflect_by_one_facet(Walk* walk, WalkMirror mirror, WalkDeparture* departure) {
+    const Vec3 v = walk->at.v;
     const float u1 = walk_uniform(&walk->random), u2 = walk_uniform(&walk->random);
-    const Vec3 h = microfacet_sample(surface.distribution, surface.alpha, v, u1, u2);
+    const Vec3 h = walk_sample_facet(mirror.surface, v, u1, u2, walk_uniform(&walk->random));
     const float cos_i = vec3_dot(v, h);
     departure->direction = walk_reflected(v, h);
     if (!(cos_i > 0.0f) || !(departure->direction.z > 0.0f))
         return 0;
-    walk->weight *= walk_single_share(surface, v, h, departure->direction, cos_i);
-    walk_reflect_by_facet(walk, cos_i);
+    walk->weight *= walk_single_share(mirror.surface, v, h, departure->direction, cos_i);
+    walk_reflect_by_facet(walk, mirror.part, cos_i);
+    return 1;
+}
+
+/// One facet of a rough conductor.
+int walk_single_conductor(Walk* walk, WalkMirror mirror, WalkDeparture* departure) {
+    walk_connect_one_facet(walk, mirror);
+    return walk_reflect_by_one_facet(walk, mirror, departure);
+}
+
+/// V-cavities of a conductor: one facet, or what they lose given back.
+int walk_cavity_conductor(Walk* walk, WalkMirror mirror, WalkDeparture* departure) {
+    const float cosine = walk->at.v.z, lost = walk_cavity_lost(mirror.surface, 0, cosine);
+    walk_connect_one_facet(walk, mirror);
+    if (walk_connect(walk, mirror.light,
+                     walk_cavity_density(mirror.surface, cosine, 0, mirror.light->v.z)))
+        walk_write(&walk->writer, WALK_CODE(WALK_LIGHT_BOUNCE, mirror.part), 0.0f);
+    if (!(walk_uniform(&walk->random) < lost)) {
+        walk->weight /= 1.0f - lost;
+        return walk_reflect_by_one_facet(walk, mirror, departure);
+    }
+    const float u1 = walk_uniform(&walk->random), u2 = walk_uniform(&walk->random);
+    int passed;
+    departure->direction =
+        walk_cavity_departure(mirror.surface, u1, u2, walk_uniform(&walk->random), &passed);
+    walk_write(&walk->writer, WALK_CODE(WALK_BOUNCE, mirror.part), 0.0f);
+    walk->expected *= walk->stack.parts[mirror.part].albedo;
     return 1;
 }
 
 /// The walk between the facets of a conductor.
-int walk_multiple_conductor(Walk* walk, WalkSurface surface, WalkDeparture* departure) {
-    const WalkArrival* light = walk->arrivals + WALK_AT_SUBSTRATE;
+int walk_smith_conductor(Walk* walk, WalkMirror mirror, WalkDeparture* departure) {
     WalkBetweenFacets facets =
-        walk_between_facets(surface, walk->at.v, walk_uniform(&walk->random));
+        walk_between_facets(mirror.surface, walk->at.v, walk_uniform(&walk->random));
     for (;;) {
-        if (light->fluence > 0.0f)
-            walk_connect_by_facet(walk, facets.v, walk_density_back(&facets, light->v));
+        if (mirror.light->fluence > 0.0f)
+            walk_connect_by_facet(walk, mirror, facets.v,
+                                  walk_density_back(&facets, mirror.light->v));
         const float u1 = walk_uniform(&walk->random), u2 = walk_uniform(&walk->random);
-        const Vec3 h = microfacet_sample(surface.distribution, surface.alpha, facets.v, u1, u2);
+        const Vec3 h =
+            microfacet_sample(mirror.surface.distribution, mirror.surface.alpha, facets.v, u1, u2);
         const float cos_i = vec3_dot(facets.v, h);
         if (!(cos_i > 0.0f))
             return 0;
-        walk_reflect_by_facet(walk, cos_i);
+        walk_reflect_by_facet(walk, mirror.part, cos_i);
         if (!walk_late_survives(facets.order, &walk->random, &walk->weight))
             return 0;
         if (walk_to_next_facet(&facets, h, 0, walk_uniform(&walk->random), &departure->direction))
@@ -198,20 +233,41 @@ int walk_multiple_conductor(Walk* walk, WalkSurface surface, WalkDeparture* depa
     }
 }
 
-int walk_meets_conductor(Walk* walk, WalkPartRecord substrate) {
-    const WalkSurface surface = walk_surface(substrate, 0);
+int walk_rough_conductor(Walk* walk, WalkMirror mirror, WalkDeparture* departure) {
+    walk->is_delta = 0;
+    if (!mirror.surface.multiple)
+        return walk_single_conductor(walk, mirror, departure);
+    return mirror.surface.distribution == MICROFACET_BLINN
+               ? walk_cavity_conductor(walk, mirror, departure)
+               : walk_smith_conductor(walk, mirror, departure);
+}
+
+/// A conductor, lit from `place`.
+int walk_meets_conductor(Walk* walk, uint part, uint place) {
+    const WalkMirror mirror = {walk_surface(walk->stack, part, 0), part, walk->arrivals + place};
     WalkDeparture departure = walk_departure();
-    if (!(surface.alpha > 0.0f)) {
+    if (!(mirror.surface.alpha > 0.0f)) {
         departure.direction = vec3(-walk->at.v.x, -walk->at.v.y, walk->at.v.z);
-        walk_reflect_by_facet(walk, walk->at.v.z);
-    } else {
-        walk->is_delta = 0;
-        if (!(surface.multiple ? walk_multiple_conductor(walk, surface, &departure)
-                               : walk_single_conductor(walk, surface, &departure)))
-            return 0;
+        walk_reflect_by_facet(walk, part, walk->at.v.z);
+    } else if (!walk_rough_conductor(walk, mirror, &departure)) {
+        return 0;
     }
     walk_go_on(&walk->at, departure);
     return walk->weight > 0.0f && walk->at.v.z > 0.0f && walk_survives(walk);
+}
+
+/// Whether a flake lies where the walk comes to the end of its slab, or sets out from there.
+int walk_finds_flake(Walk* walk) {
+    const uint slab = walk->at.medium - 1u;
+    return walk->stack.parts[slab].flakes != NO_INDEX &&
+           walk_uniform(&walk->random) < walk->stack.parts[slab].coverage;
+}
+
+int walk_meets_flake(Walk* walk) {
+    const uint slab = walk->at.medium - 1u;
+    ++walk->steps;
+    return walk_meets_conductor(walk, walk->stack.parts[slab].flakes,
+                                WALK_AT_FLAKES(slab, walk->at.down));
 }
 #endif
 
@@ -283,9 +339,7 @@ int walk_scatter_in_slab(Walk* walk, uint k, WalkPartRecord part) {
 #endif
 
 /// Through the slab of the medium to its end.
-int walk_cross(Walk* walk) {
-    if (walk->at.medium == 0u)
-        return 1;
+int walk_cross_slab(Walk* walk) {
     const uint k = walk->at.medium - 1u;
     const WalkPartRecord part = walk->stack.parts[k];
 #if FEATURE_SCATTERING_SLABS
@@ -299,11 +353,31 @@ int walk_cross(Walk* walk) {
     return 1;
 }
 
+/// On to the next interface or the substrate, through the medium's slab and the flakes at its lower
+/// end.
+int walk_cross(Walk* walk) {
+    if (walk->at.medium == 0u)
+        return 1;
+#if FEATURE_TABULATED_REFLECTANCE
+    if (!walk->at.down && walk_finds_flake(walk))
+        return walk_meets_flake(walk);
+    for (;;) {
+        if (!walk_cross_slab(walk))
+            return 0;
+        if (!walk->at.down || !walk_finds_flake(walk))
+            return 1;
+        if (!walk_meets_flake(walk))
+            return 0;
+    }
+#else
+    return walk_cross_slab(walk);
+#endif
+}
+
 int walk_meets_substrate(Walk* walk) {
 #if FEATURE_TABULATED_REFLECTANCE
-    const WalkPartRecord substrate = walk->stack.parts[walk->stack.count];
-    if (substrate.reflectance != NO_INDEX)
-        return walk_meets_conductor(walk, substrate);
+    if (walk->stack.parts[walk->stack.count].reflectance != NO_INDEX)
+        return walk_meets_conductor(walk, walk->stack.count, WALK_AT_SUBSTRATE);
 #endif
     return walk_meets_diffuse(walk);
 }

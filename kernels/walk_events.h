@@ -16,11 +16,14 @@
 #define WALK_SUBSTRATE 3u
 /// A facet of conductor `index` met at a cosine: L *= R(cosine).
 #define WALK_REFLECT 4u
+/// Conductor `index` gave back what its V-cavities lost: L *= what facets kept of it.
+#define WALK_BOUNCE 5u
 /// A light seen from here: L += value * E. E is its spectrum after what the events that follow
-/// (and are read before) say of its way here: E *= exp(-depth length), E *= R(cosine).
-#define WALK_CONNECT 5u
-#define WALK_LIGHT_PASS 6u
-#define WALK_LIGHT_REFLECT 7u
+/// (and are read before) say of its way here: E *= exp(-depth length), and so on.
+#define WALK_CONNECT 6u
+#define WALK_LIGHT_PASS 7u
+#define WALK_LIGHT_REFLECT 8u
+#define WALK_LIGHT_BOUNCE 9u
 
 #define WALK_KIND(code) ((code) >> 24)
 #define WALK_INDEX(code) ((code)&0xffffffu)

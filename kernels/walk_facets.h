@@ -10,6 +10,7 @@
 #include "kernels/fresnel.h"
 #include "kernels/microfacet.h"
 #include "kernels/portable.h"
+#include "kernels/shared.h"
 
 KERNELS_BEGIN
 
@@ -21,6 +22,7 @@ typedef struct {
     real eta;   ///< IOR beyond over IOR on this side
     int multiple;
     int is_mirror;
+    GLOBAL_CONST shared_float* cavities; ///< walk_cavities.h; of blinn, multiple
 } WalkSurface;
 
 DEVICE_FUNCTION WalkSurface walk_from_beyond(WalkSurface surface) {
@@ -126,14 +128,39 @@ DEVICE_FUNCTION real walk_refraction_density(WalkSurface surface, Vec3 v, Vec3 w
            microfacet_d(surface.distribution, surface.alpha, r.h);
 }
 
-/// Share of a facet's light that gets out when only one meeting counts, over what sampling by
-/// microfacet_sample accounts for: Smith's G2 / G1, or the V-cavity's G over its own pdf.
+/// Share of a facet of a V-cavity that v sees: G1 (Cook and Torrance 1982 eq. 3).
+DEVICE_FUNCTION real walk_cavity_seen(Vec3 v, Vec3 h, real cos_v) {
+    return fmin(REAL(1.0), REAL(2.0) * h.z * v.z / fmax(cos_v, REAL(1e-20)));
+}
+
+/// A facet as it is seen from v, u uniform. The two facets of a V-cavity are picked by the area
+/// that they show (Heitz and d'Eon 2014, section 4), so that no weight exceeds 1.
+DEVICE_FUNCTION Vec3 walk_sample_facet(WalkSurface surface, Vec3 v, real u1, real u2, real u) {
+    const Vec3 h = microfacet_sample(surface.distribution, surface.alpha, v, u1, u2);
+    if (surface.distribution == MICROFACET_BLINN) {
+        const Vec3 other = vec3(-h.x, -h.y, h.z);
+        const real seen = fmax(vec3_dot(v, h), REAL(0.0));
+        const real other_seen = fmax(vec3_dot(v, other), REAL(0.0));
+        return u * (seen + other_seen) < other_seen ? other : h;
+    }
+    return h;
+}
+
+/// Density of walk_sample_facet, 1/sr: G1 (v.h) D(h) / v.z.
+DEVICE_FUNCTION real walk_facet_pdf(WalkSurface surface, Vec3 v, Vec3 h) {
+    if (surface.distribution == MICROFACET_BLINN) {
+        const real cos_v = fmax(vec3_dot(v, h), REAL(0.0));
+        return microfacet_d(surface.distribution, surface.alpha, h) * cos_v *
+               walk_cavity_seen(v, h, cos_v) / v.z;
+    }
+    return microfacet_pdf(surface.distribution, surface.alpha, v, h);
+}
+
+/// Share of a seen facet's light that gets out when only one meeting counts: G2 / G1.
 DEVICE_FUNCTION real walk_single_share(WalkSurface surface, Vec3 v, Vec3 h, Vec3 w, real cos_w) {
     if (surface.distribution == MICROFACET_BLINN) {
-        const real cos_i = vec3_dot(v, h);
-        const real g = fmin(REAL(1.0), fmin(REAL(2.0) * h.z * w.z / fmax(cos_w, REAL(1e-20)),
-                                            REAL(2.0) * h.z * v.z / cos_i));
-        return g * cos_i / (v.z * h.z);
+        const real seen = walk_cavity_seen(v, h, vec3_dot(v, h));
+        return fmin(seen, walk_cavity_seen(w, h, cos_w)) / fmax(seen, REAL(1e-20));
     }
     {
         const real seen = REAL(1.0) + walk_lambda(surface, v);

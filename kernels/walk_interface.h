@@ -6,6 +6,7 @@
 
 #include "kernels/portable.h"
 #include "kernels/random.h"
+#include "kernels/walk_cavities.h"
 #include "kernels/walk_facets.h"
 
 KERNELS_BEGIN
@@ -101,22 +102,19 @@ DEVICE_FUNCTION void walk_single_densities(WalkSurface surface, Vec3 v, WalkTarg
     if (targets.has_beyond) {
         const WalkRefraction r = walk_refraction(surface, v, targets.beyond);
         if (r.jacobian > REAL(0.0)) {
-            departure->beyond_density =
-                (REAL(1.0) - walk_reflectance(surface, r.cos_i)) * r.jacobian *
-                microfacet_pdf(surface.distribution, surface.alpha, v, r.h) *
-                walk_single_share(surface, v, r.h, targets.beyond, r.cos_t);
+            departure->beyond_density = (REAL(1.0) - walk_reflectance(surface, r.cos_i)) *
+                                        r.jacobian * walk_facet_pdf(surface, v, r.h) *
+                                        walk_single_share(surface, v, r.h, targets.beyond, r.cos_t);
         }
     }
 }
 
-/// One facet; what other facets mask is lost (Walter et al. 2007).
-DEVICE_FUNCTION WalkDeparture walk_single(WalkSurface surface, Vec3 v, WalkTargets targets,
-                                          WalkRandom* random) {
+/// One facet; what other facets mask is lost (Walter et al. 2007). No densities.
+DEVICE_FUNCTION WalkDeparture walk_one_facet(WalkSurface surface, Vec3 v, WalkRandom* random) {
     WalkDeparture departure = walk_departure();
     const real u1 = walk_uniform(random), u2 = walk_uniform(random);
-    const Vec3 h = microfacet_sample(surface.distribution, surface.alpha, v, u1, u2);
+    const Vec3 h = walk_sample_facet(surface, v, u1, u2, walk_uniform(random));
     const real cos_i = vec3_dot(v, h);
-    walk_single_densities(surface, v, targets, &departure);
     departure.weight = REAL(0.0);
     if (!(cos_i > REAL(0.0))) {
         return departure;
@@ -126,6 +124,36 @@ DEVICE_FUNCTION WalkDeparture walk_single(WalkSurface surface, Vec3 v, WalkTarge
     if (departure.direction.z > REAL(0.0)) {
         const real cos_w = departure.passed ? fresnel_cos_transmitted(cos_i, surface.eta) : cos_i;
         departure.weight = walk_single_share(surface, v, h, departure.direction, cos_w);
+    }
+    return departure;
+}
+
+DEVICE_FUNCTION WalkDeparture walk_single(WalkSurface surface, Vec3 v, WalkTargets targets,
+                                          WalkRandom* random) {
+    WalkDeparture departure = walk_one_facet(surface, v, random);
+    walk_single_densities(surface, v, targets, &departure);
+    return departure;
+}
+
+/// One facet of V-cavities, or what they lose given back.
+DEVICE_FUNCTION WalkDeparture walk_cavities(WalkSurface surface, Vec3 v, WalkTargets targets,
+                                            WalkRandom* random) {
+    const real lost = walk_cavity_lost(surface, walk_cavity_is_dense(surface), v.z);
+    WalkDeparture departure = walk_departure();
+    if (walk_uniform(random) < lost) {
+        const real u1 = walk_uniform(random), u2 = walk_uniform(random);
+        departure.direction =
+            walk_cavity_departure(surface, u1, u2, walk_uniform(random), &departure.passed);
+    } else {
+        departure = walk_one_facet(surface, v, random);
+        departure.weight /= REAL(1.0) - lost;
+    }
+    walk_single_densities(surface, v, targets, &departure);
+    if (targets.has_same) {
+        departure.same_density += walk_cavity_density(surface, v.z, 0, targets.same.z);
+    }
+    if (targets.has_beyond) {
+        departure.beyond_density += walk_cavity_density(surface, v.z, 1, targets.beyond.z);
     }
     return departure;
 }
@@ -210,8 +238,8 @@ DEVICE_FUNCTION int walk_late_survives(uint order, WalkRandom* random, real* wei
 }
 
 /// The whole walk between facets, which loses nothing.
-DEVICE_FUNCTION WalkDeparture walk_multiple(WalkSurface surface, Vec3 v, WalkTargets targets,
-                                            WalkRandom* random) {
+DEVICE_FUNCTION WalkDeparture walk_smith(WalkSurface surface, Vec3 v, WalkTargets targets,
+                                         WalkRandom* random) {
     WalkDeparture departure = walk_departure();
     WalkBetweenFacets walk = walk_between_facets(surface, v, walk_uniform(random));
     for (;;) {
@@ -231,6 +259,13 @@ DEVICE_FUNCTION WalkDeparture walk_multiple(WalkSurface surface, Vec3 v, WalkTar
             return departure;
         }
     }
+}
+
+/// A rough interface whose scattering is `multiple`.
+DEVICE_FUNCTION WalkDeparture walk_multiple(WalkSurface surface, Vec3 v, WalkTargets targets,
+                                            WalkRandom* random) {
+    return surface.distribution == MICROFACET_BLINN ? walk_cavities(surface, v, targets, random)
+                                                    : walk_smith(surface, v, targets, random);
 }
 
 /// Any interface between dielectrics.

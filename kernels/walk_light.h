@@ -20,9 +20,10 @@
 #include "kernels/shared.h"
 #include "kernels/walk_interface.h"
 
-/// A stack of `count` interfaces; parts[count] is the substrate.
+/// A stack of `count` interfaces; parts[count] is the substrate, sheets of flakes come after it.
 typedef struct {
     __global const WalkPartRecord* parts;
+    __global const float* tables;
     uint count;
     float sigma; ///< of an Oren-Nayar substrate
 } WalkStack;
@@ -37,11 +38,14 @@ typedef struct {
 } WalkArrival;
 
 /// Places of arrival: interface k from above and from below, the substrate, slab k (which lies
-/// under interface k) on the way down and on the way up.
+/// under interface k) on the way down and on the way up, the flakes at the end of slab k.
 #define WALK_AT_INTERFACE(k, down) (2u * (k) + ((down) ? 0u : 1u))
 #define WALK_AT_SUBSTRATE (2u * WALK_LAYERS)
 #define WALK_IN_SLAB(k, down) (2u * WALK_LAYERS + 1u + 2u * (k) + ((down) ? 0u : 1u))
-#if FEATURE_SCATTERING_SLABS
+#define WALK_AT_FLAKES(k, down) (4u * WALK_LAYERS + 1u + 2u * (k) + ((down) ? 0u : 1u))
+#if FEATURE_TABULATED_REFLECTANCE
+#define WALK_PLACES (6u * WALK_LAYERS + 1u)
+#elif FEATURE_SCATTERING_SLABS
 #define WALK_PLACES (4u * WALK_LAYERS + 1u)
 #else
 #define WALK_PLACES (2u * WALK_LAYERS + 1u)
@@ -55,10 +59,14 @@ typedef struct {
     int down;
 } WalkPosition;
 
-WalkSurface walk_surface(WalkPartRecord part, int from_below) {
-    const WalkSurface surface = {(int)part.distribution, part.alpha,
-                                 from_below ? 1.0f / part.eta : part.eta, (int)part.multiple,
-                                 part.reflectance != NO_INDEX};
+WalkSurface walk_surface(WalkStack stack, uint part_index, int from_below) {
+    const WalkPartRecord part = stack.parts[part_index];
+    const WalkSurface surface = {(int)part.distribution,
+                                 part.alpha,
+                                 from_below ? 1.0f / part.eta : part.eta,
+                                 (int)part.multiple,
+                                 part.reflectance != NO_INDEX,
+                                 stack.tables + (part.cavities == NO_INDEX ? 0u : part.cavities)};
     return surface;
 }
 
@@ -105,7 +113,7 @@ WalkDeparture walk_light_through(WalkSurface surface, Vec3 v, WalkRandom* random
         return walk_multiple(surface, v, walk_no_targets(), random);
     WalkDeparture departure = walk_departure();
     const float u1 = walk_uniform(random), u2 = walk_uniform(random);
-    const Vec3 h = microfacet_sample(surface.distribution, surface.alpha, v, u1, u2);
+    const Vec3 h = walk_sample_facet(surface, v, u1, u2, walk_uniform(random));
     const float cos_i = vec3_dot(v, h);
     const float reflectance = cos_i > 0.0f ? walk_reflectance(surface, cos_i) : 1.0f;
     if (!(reflectance < 1.0f))
@@ -131,17 +139,33 @@ WalkDeparture walk_light_smooth(WalkSurface surface, WalkPosition at, WalkRandom
     return departure;
 }
 
+/// Past the flakes at the end of the medium's slab, unmet.
+void walk_light_pass_flakes(WalkStack stack, WalkPosition at, WalkArrival* light,
+                            WalkRandom* random, WalkArrival* arrivals) {
+#if FEATURE_TABULATED_REFLECTANCE
+    const WalkPartRecord slab = stack.parts[at.medium - 1u];
+    if (slab.flakes == NO_INDEX)
+        return;
+    walk_arrive(arrivals + WALK_AT_FLAKES(at.medium - 1u, at.down), *light, random);
+    light->fluence *= 1.0f - slab.coverage;
+#endif
+}
+
 /// Through the slab of the medium, unscattered.
 void walk_light_cross(WalkStack stack, WalkPosition at, WalkArrival* light, WalkRandom* random,
                       WalkArrival* arrivals) {
     if (at.medium == 0u)
         return;
     light->v = at.v;
+    if (!at.down)
+        walk_light_pass_flakes(stack, at, light, random, arrivals);
 #if FEATURE_SCATTERING_SLABS
     if (stack.parts[at.medium - 1u].scattering != NO_INDEX)
         walk_arrive(arrivals + WALK_IN_SLAB(at.medium - 1u, at.down), *light, random);
 #endif
     light->lengths[at.medium - 1u] += 1.0f / at.v.z;
+    if (at.down)
+        walk_light_pass_flakes(stack, at, light, random, arrivals);
 }
 
 /// At an interface: arrival where it is rough, and the way on. Returns 0 where the light's half
@@ -149,7 +173,7 @@ void walk_light_cross(WalkStack stack, WalkPosition at, WalkArrival* light, Walk
 int walk_light_meets(WalkStack stack, WalkPosition* at, WalkArrival* light, WalkRandom* random,
                      WalkArrival* arrivals) {
     const uint k = walk_interface_ahead(*at);
-    const WalkSurface surface = walk_surface(stack.parts[k], !at->down);
+    const WalkSurface surface = walk_surface(stack, k, !at->down);
     const int is_rough = walk_is_rough(surface);
     if (is_rough) {
         walk_arrive(arrivals + WALK_AT_INTERFACE(k, at->down), *light, random);

@@ -25,6 +25,16 @@ public:
     };
     Departure sample(double u1, double u2) const;
 
+    /// Cells of direction of one side: cosines ascending, and the lost share of each cell.
+    struct Cells {
+        double ior = 1.0;
+        std::vector<double> edges;
+        std::vector<double> lost;
+    };
+    const std::vector<Cells>& sides() const { return sides_; }
+    /// Running sum, over the cells of all sides, of etendue times lost.
+    const std::vector<double>& cumulative() const { return cumulative_; }
+
     /// Shared by all who ask for the same surface; thread-safe. `eta` >= 1 is a dielectric
     /// interface's ratio; 0 an opaque surface that reflects everything, with side 0 alone.
     static std::shared_ptr<const LostFlux> of(double eta, double alpha);
@@ -32,13 +42,8 @@ public:
 private:
     LostFlux(double eta, double alpha);
 
-    struct Cells {
-        double ior = 1.0;
-        std::vector<double> edges;
-        std::vector<double> lost;
-    };
     std::vector<Cells> sides_;
-    std::vector<double> cumulative_; ///< over the cells of all sides, of etendue times lost
+    std::vector<double> cumulative_;
 };
 
 } // namespace reradiant

@@ -104,7 +104,7 @@ void append_hero(const Scene& scene, const WavelengthPlan& plan, SceneTables& ta
         MaterialRecord& material = tables.materials[i];
         if (material.walk != NO_INDEX)
             throw_input_error(
-                {scene.file.string()},
+                scene.materials[i].position,
                 fmt::format("material '{}' is walked through, which --wavelengths hero cannot do",
                             scene.materials[i].name),
                 "take --wavelengths comb, or --model adding or weidlich-wilkie");

@@ -118,12 +118,25 @@ void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables
     result.notes = tables.notes;
 }
 
-std::uint64_t most_deeper_lobes(const Scene& scene, Model model) {
-    int most = 0;
-    for (const Material& material : scene.materials)
-        most = std::max(most, deeper_lobe_count(
-                                  material, choose_model(material, model, ModelUse::Render).model));
-    return static_cast<std::uint64_t>(most);
+/// What models need of a path's vertices, and of a path that walks.
+struct ModelBytes {
+    std::uint64_t vertex = 0, path = 0;
+};
+ModelBytes model_bytes(const Scene& scene, const WavelengthPlan& plan, Model requested) {
+    int most_lobes = 0;
+    bool walks = false;
+    for (const Material& material : scene.materials) {
+        const Model model = choose_model(material, requested, use_in(plan)).model;
+        walks |= model == Model::Walk;
+        if (model != Model::Walk)
+            most_lobes = std::max(most_lobes, deeper_lobe_count(material, model));
+    }
+    ModelBytes bytes{2 * sizeof(float) * static_cast<std::uint64_t>(most_lobes), 0};
+    if (walks) {
+        bytes.vertex += sizeof(WalkVertexRecord);
+        bytes.path += walk_chunks_a_path * sizeof(WalkChunk);
+    }
+    return bytes;
 }
 
 /// Whether images colour lights or reflectances, so that vertices keep colours.
@@ -203,13 +216,13 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
     const std::uint64_t film = pixels * (rows * lanes + film_statistics_per_pixel) * 4;
     const std::uint64_t image = pixels * (static_cast<std::uint64_t>(plan.film.count) + 5) * 4;
     const std::uint64_t depth = static_cast<std::uint64_t>(scene.integrator.max_depth) + 1;
-    const std::uint64_t vertex = sizeof(VertexRecord) + sizeof(RayRecord) +
-                                 2 * sizeof(float) * most_deeper_lobes(scene, options.model) +
+    const ModelBytes models = model_bytes(scene, plan, options.model);
+    const std::uint64_t vertex = sizeof(VertexRecord) + sizeof(RayRecord) + models.vertex +
                                  (has_colours(scene) ? VERTEX_COLOURS * sizeof(float) : 0) +
                                  (plan.hero > 0 ? 8 * hero_width(plan.hero) : 0);
     const std::uint64_t paths =
-        options.batch_paths *
-        (depth * vertex + lanes * 4 + sizeof(RayRecord) + sizeof(HitRecord) + sizeof(PathState));
+        options.batch_paths * (depth * vertex + models.path + lanes * 4 + sizeof(RayRecord) +
+                               sizeof(HitRecord) + sizeof(PathState));
     // The film is mapped where it is; the image is held once more while it is written.
     return film + 2 * image + paths;
 }
@@ -227,7 +240,7 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
     Wavefront wavefront(device, geometry, tables, result.plan,
                         {static_cast<std::uint32_t>(scene.integrator.max_depth),
                          static_cast<std::uint32_t>(scene.integrator.min_depth), options.seed,
-                         options.batch_paths, options.threads},
+                         options.batch_paths, options.threads, options.on_rays},
                         result.build);
     result.setup_seconds = seconds_since(start) - result.build.seconds;
 

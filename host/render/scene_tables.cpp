@@ -31,6 +31,10 @@ void drop_repeats(std::vector<std::string>& notes) {
 
 } // namespace
 
+ModelUse use_in(const WavelengthPlan& plan) {
+    return plan.hero > 0 ? ModelUse::RenderHero : ModelUse::Render;
+}
+
 SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, Model model,
                                bool keep_all) {
     SceneTables tables;
@@ -38,7 +42,7 @@ SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, M
         tables.features = RenderFeatures::all();
     std::vector<Model> models;
     for (const Material& material : scene.materials) {
-        const ModelChoice choice = choose_model(material, model, ModelUse::Render);
+        const ModelChoice choice = choose_model(material, model, use_in(plan));
         models.push_back(choice.model);
         tables.notes.push_back(model_note(material, choice));
         if (choice.model != Model::Walk)
@@ -52,7 +56,7 @@ SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, M
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         if (models[i] == Model::Walk)
-            append_walk_material(material, plan, scene.file.string(), tables);
+            append_walk_material(material, plan, tables);
         else
             append_material(material, models[i], plan, tables.features.lobes, tables);
     }

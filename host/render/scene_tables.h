@@ -2,6 +2,7 @@
 
 #include "host/render/render_features.h"
 #include "host/render/wavelength_plan.h"
+#include "host/scene/model_choice.h"
 #include "kernels/shared.h"
 
 #include <string>
@@ -40,6 +41,9 @@ void append_surfaces(const Scene& scene, SceneTables& tables);
 void append_lights(const Scene& scene, const WavelengthPlan& plan, SceneTables& tables);
 
 CameraRecord camera_record(const Camera& camera, const FilmSettings& film);
+
+/// What materials are looked at for in a picture that samples wavelengths so.
+ModelUse use_in(const WavelengthPlan& plan);
 
 /// `model` other than Auto replaces every material's own; `keep_all` sets every feature bit.
 SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, Model model,

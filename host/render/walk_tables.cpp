@@ -2,7 +2,9 @@
 
 #include "host/error.h"
 #include "host/layers/facet_reflectance.h"
+#include "host/layers/walk_surface.h"
 #include "host/render/substrate_tables.h"
+#include "host/scene/model_choice.h"
 
 #include <fmt/format.h>
 
@@ -19,34 +21,11 @@ namespace {
 /// where a lane's is smaller still, weights bounded by WALK_REFERENCES make up for it.
 constexpr double least_reference = 1e-3;
 
-void refuse(const Material& material, const std::string& file, const char* what,
-            const char* remedy) {
-    throw_input_error({file}, fmt::format("material '{}': {}", material.name, what), remedy);
-}
-
-bool walks_between_v_cavities(Distribution distribution, double alpha, Scattering scattering) {
-    return alpha > 0.0 && distribution == Distribution::Blinn && scattering == Scattering::Multiple;
-}
-
-void check_material(const Material& material, const std::string& file) {
-    const LayerStack& stack = material.stack;
-    const Conductor& conductor = material.substrate.conductor;
-    const bool has_conductor = material.substrate.type == SubstrateType::Conductor;
-    if (stack.is_dispersive())
-        refuse(material, file, "walk renders stacks whose IOR does not depend on wavelength",
-               "give numbers for ior, use adding or weidlich-wilkie, or measure the material");
-    if (stack.has_films())
-        refuse(material, file, "walk renders no films between dielectrics", "use weidlich-wilkie");
-    if (stack.has_flakes())
-        refuse(material, file, "walk renders no flakes", "use weidlich-wilkie");
-    bool v_cavities =
-        has_conductor &&
-        walks_between_v_cavities(conductor.distribution, conductor.alpha, conductor.scattering);
-    for (const Layer& layer : stack.layers)
-        v_cavities |= walks_between_v_cavities(layer.distribution, layer.alpha, layer.scattering);
-    if (v_cavities)
-        refuse(material, file, "walk follows no light between the V-cavities of blinn",
-               "give scattering = \"single\", or the distribution ggx or beckmann");
+void check_material(const Material& material) {
+    if (const std::optional<std::string> refusal = device_walk_refusal(material))
+        throw_input_error(material.position,
+                          fmt::format("material '{}': {}", material.name, *refusal),
+                          "use weidlich-wilkie or adding, or measure the material by walk");
 }
 
 /// A surface of a stack, or of its substrate; nothing beneath it yet.
@@ -57,7 +36,8 @@ WalkPartRecord surface_part(double alpha, Distribution distribution, Scattering 
     part.distribution = static_cast<std::uint32_t>(kernel_distribution(distribution));
     part.multiple = scattering == Scattering::Multiple ? 1u : 0u;
     part.albedo = 1.0f;
-    part.reflectance = part.extinction = part.scattering = NO_INDEX;
+    part.cavities = part.reflectance = part.bounced = NO_INDEX;
+    part.extinction = part.scattering = part.flakes = NO_INDEX;
     return part;
 }
 
@@ -95,8 +75,9 @@ public:
         record_.walk = static_cast<std::uint32_t>(out_.walk_parts.size());
         record_.layer_count = static_cast<std::uint32_t>(layers_.size());
         for (std::size_t k = 0; k < layers_.size(); ++k)
-            append_layer(layers_[k], k > 0 ? layers_[k - 1].ior(reference_nm) : 1.0);
+            append_layer(k);
         append_substrate_part();
+        append_flakes();
         out_.features.walk = true;
         out_.features.walk_layers =
             std::max(out_.features.walk_layers, static_cast<int>(layers_.size()));
@@ -104,13 +85,41 @@ public:
     }
 
 private:
-    void append_layer(const Layer& layer, double ior_above) {
+    void append_layer(std::size_t k) {
+        const Layer& layer = layers_[k];
         const double ior = layer.ior(reference_nm);
         WalkPartRecord part = surface_part(layer.alpha, layer.distribution, layer.scattering);
-        part.eta = static_cast<float>(ior / ior_above);
+        part.eta = static_cast<float>(ior / ior_of_medium(k));
         part.ior = static_cast<float>(ior);
+        const WalkSurface surface = interface_surface(stack_at(material_.stack, reference_nm), k);
+        if (surface.lost)
+            part.cavities = append_cavities(*surface.lost);
         append_slab(layer, part);
         out_.walk_parts.push_back(part);
+    }
+
+    /// Of the medium above interface `k`.
+    double ior_of_medium(std::size_t k) const {
+        return k > 0 ? layers_[k - 1].ior(reference_nm) : 1.0;
+    }
+
+    /// The table that kernels/walk_cavities.h reads.
+    std::uint32_t append_cavities(const LostFlux& flux) {
+        const std::uint32_t offset = lanes_.here();
+        const auto append_all = [this](const std::vector<double>& values) {
+            for (const double value : values)
+                lanes_.append(value);
+        };
+        const std::vector<LostFlux::Cells>& sides = flux.sides();
+        for (std::size_t side = 0; side < 2; ++side)
+            lanes_.append(side < sides.size() ? static_cast<double>(sides[side].lost.size()) : 0.0);
+        lanes_.append(flux.cumulative().back());
+        for (const LostFlux::Cells& cells : sides) {
+            append_all(cells.edges);
+            append_all(cells.lost);
+        }
+        append_all(flux.cumulative());
+        return offset;
     }
 
     std::vector<double> depths_of(const Spectrum& coefficient, double thickness) const {
@@ -153,7 +162,7 @@ private:
         const LaneOperator middle =
             append_substrate(bare, Model::Adding, optics, lanes_, record_, out_);
         if (material_.substrate.type == SubstrateType::Conductor) {
-            append_conductor(material_.substrate.conductor);
+            append_conductor(material_.substrate.conductor, ior_of_medium(layers_.size()));
             return;
         }
         WalkPartRecord part = surface_part(0.0, Distribution::Ggx, Scattering::Single);
@@ -162,9 +171,8 @@ private:
         out_.walk_parts.push_back(part);
     }
 
-    /// Reflectance at a facet under the lowest slab, over its cosine.
-    void append_conductor(const Conductor& conductor) {
-        const double ior_above = layers_.empty() ? 1.0 : layers_.back().ior(reference_nm);
+    /// A conductor in a medium. Its reflectance at a facet is tabulated over the cosine there.
+    void append_conductor(const Conductor& conductor, double ior_above) {
         const auto reflectance = [&](double cosine, int phase, int lane) {
             const double nm = lanes_.plan().wavelength_nm(lane, phase);
             return facet_reflectance(conductor_at(conductor, nm), ior_above, cosine);
@@ -176,8 +184,29 @@ private:
         for (int lane = 0; lane < lanes_.lanes(); ++lane)
             sum += reflectance(1.0, lanes_.phases() / 2, lane);
         part.albedo = static_cast<float>(sum / lanes_.lanes());
+        const auto surface = [&](double nm) {
+            return conductor_surface(conductor_at(conductor, nm), ior_above, nm);
+        };
+        if (const auto flux = surface(reference_nm).lost) {
+            part.cavities = append_cavities(*flux);
+            part.bounced = lanes_.append_lanes([&](int phase, int lane) {
+                return surface(lanes_.plan().wavelength_nm(lane, phase)).lost_reflectance;
+            });
+        }
         out_.features.tabulated_reflectance = true;
         out_.walk_parts.push_back(part);
+    }
+
+    /// Sheets of flakes, after the substrate.
+    void append_flakes() {
+        for (std::size_t k = 0; k < layers_.size(); ++k) {
+            if (!layers_[k].flakes || !(layers_[k].flakes->coverage > 0.0))
+                continue;
+            WalkPartRecord& slab = out_.walk_parts[record_.walk + k];
+            slab.flakes = static_cast<std::uint32_t>(out_.walk_parts.size()) - record_.walk;
+            slab.coverage = static_cast<float>(layers_[k].flakes->coverage);
+            append_conductor(layers_[k].flakes->reflector, layers_[k].ior(reference_nm));
+        }
     }
 
     const Material& material_;
@@ -190,8 +219,8 @@ private:
 } // namespace
 
 void append_walk_material(const Material& material, const WavelengthPlan& plan,
-                          const std::string& file, SceneTables& tables) {
-    check_material(material, file);
+                          SceneTables& tables) {
+    check_material(material);
     WalkTables(material, plan, tables).append();
 }
 

@@ -5,10 +5,8 @@
 namespace reradiant {
 
 /// Appends the tables of a material that is walked through (kernels/walk.h); sets the feature bits
-/// it needs. `file`: the scene's, for errors. Input Error for what the walk of the renderer has
-/// not: an IOR that depends on wavelength, films, flakes, and `multiple` scattering between the
-/// facets of blinn, whose V-cavities no microsurface describes.
+/// it needs. Input Error at the material for what device_walk_refusal names.
 void append_walk_material(const Material& material, const WavelengthPlan& plan,
-                          const std::string& file, SceneTables& tables);
+                          SceneTables& tables);
 
 } // namespace reradiant

@@ -16,9 +16,6 @@ namespace {
 constexpr std::size_t scalar_group = 32;
 constexpr std::size_t vector_group = 8;
 
-/// Chunks of events that walks have at first; a batch that needs more gets more.
-constexpr std::size_t chunks_a_path = 4;
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -65,7 +62,8 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         const bool colours = scene.features.environment_image || scene.features.reflectance_image;
         colours_ = {device, colours ? slots * VERTEX_COLOURS : 0};
         const bool walks = scene.features.walk;
-        walk_chunks_ = {device, walks ? chunks_a_path * static_cast<std::size_t>(capacity_) : 0};
+        walk_chunks_ = {device,
+                        walks ? walk_chunks_a_path * static_cast<std::size_t>(capacity_) : 0};
         walk_chunks_used_ = {device, std::size_t{walks}};
         walk_vertices_ = {device, walks ? slots : 0};
         const std::size_t sets =
@@ -163,6 +161,8 @@ bool Wavefront::intersect(const Batch& batch, std::uint32_t depth) {
     const auto hits = hits_.map(CL_MAP_WRITE, 0, batch.paths());
     const auto active = std::count_if(rays.span().begin(), rays.span().end(),
                                       [](const RayRecord& ray) { return ray.t_far >= 0.0f; });
+    if (settings_.on_rays)
+        settings_.on_rays(rays.span(), false, depth == 0);
     if (active > 0)
         geometry_.intersect(rays.span(), hits.span(), depth == 0, settings_.threads);
     statistics_.rays += static_cast<std::uint64_t>(active);
@@ -191,6 +191,8 @@ void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
                                        static_cast<std::size_t>(depth) * capacity_, batch.paths());
     const auto active = std::count_if(rays.span().begin(), rays.span().end(),
                                       [](const RayRecord& ray) { return ray.t_far >= 0.0f; });
+    if (settings_.on_rays)
+        settings_.on_rays(rays.span(), true, false);
     if (active > 0)
         geometry_.occlude(rays.span(), settings_.threads);
     statistics_.rays += static_cast<std::uint64_t>(active);

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 
 namespace reradiant {
 
@@ -22,11 +23,18 @@ struct WavefrontStatistics {
     std::uint64_t rays = 0; ///< camera, path and shadow rays that were traced
 };
 
+/// Chunks of events that walks have at first; a batch that needs more gets more.
+inline constexpr std::size_t walk_chunks_a_path = 4;
+
+/// Sees every batch of rays before it is traced, active or not (RayRecord::t_far).
+using RaySink = std::function<void(std::span<const RayRecord> rays, bool shadow, bool coherent)>;
+
 struct WavefrontSettings {
     std::uint32_t max_depth = 8, min_depth = 3;
     std::uint32_t seed = 0;
     std::size_t batch_paths = 1u << 15;
     int threads = 0;
+    RaySink on_rays = {};
 };
 
 /// The wavefront path tracer: stages on the device, rays on the host (DESIGN 3).

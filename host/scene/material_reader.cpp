@@ -34,6 +34,7 @@ void refuse_adding_of_mirrors(const TableReader& reader, const Material& materia
 Material read_at_levels(const TableReader& reader, LoadState& state) {
     Material material;
     material.name = reader.text_or("name", fs::path(reader.file()).stem().string());
+    material.position = reader.position();
     if (reader.has("model"))
         material.model =
             model_from_name(reader.choice("model", {"auto", "adding", "weidlich-wilkie", "walk"}));

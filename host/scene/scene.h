@@ -146,6 +146,7 @@ struct Material {
     Model model = Model::Auto;
     LayerStack stack; ///< air side first; may be empty (bare substrate)
     Substrate substrate;
+    SourcePosition position; ///< of its table, for errors; empty when it was put together in code
 };
 
 struct SphereShape {

@@ -10,6 +10,7 @@
 #include "kernels/random.h"
 #include "kernels/reradiation.h"
 #include "kernels/sampling.h"
+#include "kernels/sequence.h"
 #include "kernels/shared.h"
 #include "kernels/table.h"
 #include "kernels/walk_facets.h"
@@ -55,6 +56,15 @@ __kernel void probe_table(__global const float* in, __global float* out, uint co
 __kernel void probe_random(__global const float* in, __global float* out, uint count) {
     ITEM;
     const Random4 r = random_4(i, i * 7u + 1u, i % 13u, 42u);
+    out[4 * i] = r.a;
+    out[4 * i + 1] = r.b;
+    out[4 * i + 2] = r.c;
+    out[4 * i + 3] = r.d;
+}
+
+__kernel void probe_sequence(__global const float* in, __global float* out, uint count) {
+    ITEM;
+    const Random4 r = sequence_4(i / 7u, i, i % 9u, 42u);
     out[4 * i] = r.a;
     out[4 * i + 1] = r.b;
     out[4 * i + 2] = r.c;
@@ -146,7 +156,7 @@ __kernel void probe_dense(__global const float* in, __global float* out, uint co
 __kernel void probe_walk_facets(__global const float* in, __global float* out, uint count) {
     ITEM;
     __global const float* p = in + 11 * i;
-    const WalkSurface surface = {(int)p[0], p[1], p[2], 1, 0};
+    const WalkSurface surface = {(int)p[0], p[1], p[2], 1, 0, 0};
     const Vec3 v = vec3(p[3], p[4], p[5]), w = vec3(p[6], p[7], p[8]);
     out[5 * i] = walk_visible_area(surface, v);
     out[5 * i + 1] = walk_reflection_density(surface, v, w);

@@ -14,7 +14,7 @@ using kernels::Vec3;
 using kernels::WalkSurface;
 
 WalkSurface surface_of(int distribution, double alpha, double eta, bool multiple = true) {
-    return {distribution, alpha, eta, multiple ? 1 : 0, 0};
+    return {distribution, alpha, eta, multiple ? 1 : 0, 0, nullptr};
 }
 
 TEST(KernelWalk, FacetsMatchDouble) {

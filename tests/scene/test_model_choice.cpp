@@ -18,6 +18,7 @@ Material metal() {
 Material flaked() {
     Material material = lacquer();
     material.stack.layers.front().flakes = Flakes{0.2, {}};
+    material.stack.layers.front().flakes->reflector.alpha = 0.2;
     return material;
 }
 Material filmed(double alpha) {
@@ -36,14 +37,40 @@ TEST(ModelChoice, AutoIsAddingWhereverItCanDoTheMaterial) {
     }
 }
 
-TEST(ModelChoice, AutoElsewhereIsExactInMeasurementsAndFastInPictures) {
-    for (const Material& material : {metal(), flaked(), filmed(0.2)}) {
-        EXPECT_EQ(choose_model(material, Model::Auto, ModelUse::Measure).model, Model::Walk);
-        const ModelChoice render = choose_model(material, Model::Auto, ModelUse::Render);
-        EXPECT_EQ(render.model, Model::WeidlichWilkie);
-        EXPECT_NE(render.reason.find("walk is exact"), std::string::npos);
-        EXPECT_NE(render.reason.find("adding does not know"), std::string::npos);
+TEST(ModelChoice, AutoElsewhereIsTheWalk) {
+    for (const Material& material : {metal(), flaked()}) {
+        for (const ModelUse use : {ModelUse::Measure, ModelUse::Render}) {
+            const ModelChoice choice = choose_model(material, Model::Auto, use);
+            EXPECT_EQ(choice.model, Model::Walk);
+            EXPECT_NE(choice.reason.find("adding does not know"), std::string::npos);
+        }
     }
+}
+
+void expect_approximation(const Material& material, ModelUse use, const char* reason) {
+    const ModelChoice choice = choose_model(material, Model::Auto, use);
+    EXPECT_EQ(choice.model, Model::WeidlichWilkie);
+    EXPECT_NE(choice.reason.find(reason), std::string::npos) << choice.reason;
+    EXPECT_NE(choice.reason.find("energy is not bounded"), std::string::npos) << choice.reason;
+    EXPECT_EQ(choose_model(material, Model::Auto, ModelUse::Measure).model, Model::Walk);
+}
+
+TEST(ModelChoice, AutoApproximatesWhatTheDeviceCannotWalk) {
+    expect_approximation(filmed(0.2), ModelUse::Render, "films");
+    Material smooth_flakes = flaked();
+    smooth_flakes.stack.layers.front().flakes->reflector.alpha = 0.0;
+    expect_approximation(smooth_flakes, ModelUse::Render, "smooth flakes");
+    Material dispersive = metal();
+    dispersive.stack.layers.front().ior = Spectrum::table({400, 700}, {1.6, 1.5});
+    expect_approximation(dispersive, ModelUse::Render, "depend on wavelength");
+    expect_approximation(metal(), ModelUse::RenderHero, "hero");
+}
+
+TEST(ModelChoice, AutoTakesTheClosedFormOfBareConductors) {
+    Material bare = metal();
+    bare.stack.layers.clear();
+    EXPECT_EQ(choose_model(bare, Model::Auto, ModelUse::Render).model, Model::WeidlichWilkie);
+    EXPECT_EQ(choose_model(bare, Model::Auto, ModelUse::Measure).model, Model::Walk);
 }
 
 TEST(ModelChoice, ANamedModelIsTakenAndTheRequestBeatsTheFile) {

@@ -1,0 +1,111 @@
+#include "kernels/sequence.h"
+#include "tests/kernels/probe.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <set>
+
+namespace reradiant {
+namespace {
+
+using namespace test;
+using kernels::Random4;
+using kernels::sequence_4;
+
+TEST(KernelSequence, DeviceAndHostGiveTheSameBits) {
+    const std::size_t count = 10000;
+    const std::vector<float> found = run_probe("probe_sequence", {0.0f}, count, 4);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Random4 r = sequence_4(i / 7u, i, i % 9u, 42u);
+        EXPECT_EQ(static_cast<double>(found[4 * i]), r.a);
+        EXPECT_EQ(static_cast<double>(found[4 * i + 1]), r.b);
+        EXPECT_EQ(static_cast<double>(found[4 * i + 2]), r.c);
+        EXPECT_EQ(static_cast<double>(found[4 * i + 3]), r.d);
+    }
+}
+
+using Point = std::array<double, 2>;
+
+/// Every box of 2^-m x 2^-(k - m) that tiles the square holds one of 2^k points.
+void expect_one_in_every_elementary_box(const std::vector<Point>& points) {
+    const int k = static_cast<int>(std::lround(std::log2(points.size())));
+    for (int m = 0; m <= k; ++m) {
+        std::set<std::pair<int, int>> boxes;
+        for (const Point& p : points)
+            boxes.emplace(static_cast<int>(p[0] * (1 << m)),
+                          static_cast<int>(p[1] * (1 << (k - m))));
+        EXPECT_EQ(boxes.size(), points.size()) << "2^" << m << " columns of 2^" << k;
+    }
+}
+
+TEST(KernelSequence, PairsOfEitherHalfAreNets) {
+    for (const std::uint32_t pixel : {0u, 12345u})
+        for (const std::uint32_t dimension : {0u, 3u})
+            for (const std::uint32_t half : {0u, 1u})
+                for (const std::uint32_t first : {0u, 64u}) {
+                    std::vector<Point> bc, ad;
+                    for (std::uint32_t i = first; i < first + 64u; ++i) {
+                        const Random4 r = sequence_4(pixel, 2u * i + half, dimension, 1u);
+                        bc.push_back({r.b, r.c});
+                        ad.push_back({r.a, r.d});
+                    }
+                    expect_one_in_every_elementary_box(bc);
+                    expect_one_in_every_elementary_box(ad);
+                }
+}
+
+/// The numbers of one sample are independent of each other, of other blocks, other pixels and the
+/// other half: over pixels, every pair fills the square evenly. 255 degrees of freedom; the bound
+/// is mean + 4.75 sd + 12, about 1e-6.
+TEST(KernelSequence, DifferentNumbersAreIndependentOverPixels) {
+    const auto pairs = [](std::uint32_t pixel) {
+        const Random4 r = sequence_4(pixel, 6u, 1u, 0u), other = sequence_4(pixel, 6u, 2u, 0u);
+        const Random4 half = sequence_4(pixel, 7u, 1u, 0u),
+                      next = sequence_4(pixel + 1u, 6u, 1u, 0u);
+        return std::vector<Point>{{r.a, r.b},     {r.a, r.c},     {r.a, r.d},     {r.b, r.c},
+                                  {r.b, r.d},     {r.c, r.d},     {r.a, other.a}, {r.b, other.b},
+                                  {r.c, other.c}, {r.d, other.d}, {r.a, half.a},  {r.b, half.b},
+                                  {r.b, next.b},  {r.c, half.c},  {r.a, next.a}};
+    };
+    const std::uint32_t count = 1u << 16;
+    std::vector<std::vector<int>> cells(pairs(0).size(), std::vector<int>(256, 0));
+    for (std::uint32_t pixel = 0; pixel < count; ++pixel) {
+        const std::vector<Point> found = pairs(pixel);
+        for (std::size_t p = 0; p < found.size(); ++p)
+            ++cells[p][static_cast<std::size_t>(found[p][0] * 16) * 16 +
+                       static_cast<std::size_t>(found[p][1] * 16)];
+    }
+    for (std::size_t p = 0; p < cells.size(); ++p) {
+        double chi = 0.0;
+        for (const int cell : cells[p])
+            chi += (cell - count / 256.0) * (cell - count / 256.0) / (count / 256.0);
+        EXPECT_LT(chi, 255 + 4.75 * std::sqrt(510.0) + 12) << "pair " << p;
+    }
+}
+
+/// Means of a smooth function over a pixel's samples come close to its integral far faster than
+/// those of independent numbers, whose error would be 1 / sqrt(n) of the spread.
+TEST(KernelSequence, IntegratesSmoothFunctionsBetterThanChance) {
+    for (const std::uint32_t samples : {16u, 64u, 256u}) {
+        double squares = 0.0;
+        constexpr std::uint32_t pixels = 200;
+        for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+            double sum = 0.0;
+            for (std::uint32_t i = 0; i < samples; ++i) {
+                const Random4 r = sequence_4(pixel, i, 2u, 9u);
+                sum += std::exp(r.b) * std::cos(r.c);
+            }
+            const double error = sum / samples - (std::exp(1.0) - 1.0) * std::sin(1.0);
+            squares += error * error / pixels;
+        }
+        const double independent = 0.52 / std::sqrt(samples); // spread of exp(b) cos(c): 0.52
+        EXPECT_LT(std::sqrt(squares), independent * 2.0 / std::sqrt(samples / 2.0)) << samples;
+    }
+}
+
+} // namespace
+} // namespace reradiant
