@@ -161,9 +161,11 @@ toml::table read_scene_table(const std::filesystem::path& file) {
 }
 
 Material load_material(const std::filesystem::path& file) {
+    return material_from_table(read_scene_table(file), file);
+}
+
+Material material_from_table(const toml::table& table, const std::filesystem::path& file) {
     LoadState state;
-    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
-    const toml::table table = parse_toml(file.string(), text);
     const TableReader root(table, file.string(), "a material file", {"material", "texture"});
     const toml::node& node = root.required("material");
     if (node.is_array())
