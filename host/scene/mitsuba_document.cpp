@@ -29,8 +29,8 @@ MitsubaDocument::MitsubaDocument(const std::filesystem::path& file) : file_(file
     for (std::size_t i = 0; i < text.size(); ++i)
         if (text[i] == '\n')
             line_starts_.push_back(static_cast<std::ptrdiff_t>(i) + 1);
-    const pugi::xml_parse_result result = document_.load_buffer(
-        text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+    const pugi::xml_parse_result result =
+        document_.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
     if (!result)
         throw_input_error(position_at(result.offset),
                           fmt::format("not valid XML: {}", result.description()),
@@ -130,7 +130,8 @@ std::vector<double> MitsubaDocument::numbers(const pugi::xml_node& element, cons
         double value = 0.0;
         const auto [stop, code] = std::from_chars(*at == '+' ? at + 1 : at, end, value);
         if (code != std::errc{} || (stop != end && !is_separator(*stop)) || !std::isfinite(value))
-            fail(element, fmt::format("{}=\"{}\" is not made of numbers", attribute, given.substr(0, 80)),
+            fail(element,
+                 fmt::format("{}=\"{}\" is not made of numbers", attribute, given.substr(0, 80)),
                  "write finite numbers");
         values.push_back(value);
         at = stop;

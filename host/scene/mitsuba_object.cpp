@@ -32,8 +32,7 @@ pugi::xml_node MitsubaObject::find(const std::string& name) const {
 pugi::xml_node MitsubaObject::property(const std::string& name, const char* tag) const {
     const pugi::xml_node found = find(name);
     if (found && std::string(found.name()) != tag)
-        document_->fail(found,
-                        fmt::format("{} of the {} is a <{}>", name, title(), found.name()),
+        document_->fail(found, fmt::format("{} of the {} is a <{}>", name, title(), found.name()),
                         fmt::format("only <{}> is supported there", tag));
     return found;
 }

@@ -1,4 +1,5 @@
 #include "host/scene/material_reader.h"
+#include "host/scene/mitsuba_import.h"
 #include "host/scene/scene_parts.h"
 #include "host/scene/scene_table.h"
 #include "host/scene/surface_builder.h"
@@ -142,6 +143,8 @@ Scene read_scene(const toml::table& table, const std::filesystem::path& file, Lo
 } // namespace
 
 Scene load_scene(const std::filesystem::path& file) {
+    if (is_mitsuba_scene(file))
+        return scene_from_table(mitsuba_scene_table(file, file.parent_path()), file);
     LoadState state;
     const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
     state.add_to_digest(text);

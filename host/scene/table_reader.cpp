@@ -174,6 +174,15 @@ std::string TableReader::text_or(const std::string& key, const std::string& othe
     return has(key) ? text(key) : otherwise;
 }
 
+bool TableReader::flag_or(const std::string& key, bool otherwise) const {
+    if (!has(key))
+        return otherwise;
+    const toml::node& node = required(key);
+    if (!node.is_boolean())
+        fail(key, fmt::format("{} is {}", key, toml_type_name(node)), "write true or false");
+    return *node.value<bool>();
+}
+
 std::string TableReader::choice(const std::string& key,
                                 const std::vector<std::string>& names) const {
     const std::string given = text(key);

@@ -66,6 +66,7 @@ public:
     int integer_or(const std::string& key, int otherwise, int low, int high) const;
     std::string text(const std::string& key) const;
     std::string text_or(const std::string& key, const std::string& otherwise) const;
+    bool flag_or(const std::string& key, bool otherwise) const;
     /// One of the names given; the message lists them.
     std::string choice(const std::string& key, const std::vector<std::string>& names) const;
     /// Three numbers, each at most MAX_COORDINATE in size.
