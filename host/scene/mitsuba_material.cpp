@@ -18,6 +18,7 @@ const std::map<std::string, double> named_ior{
     {"pyrex", 1.47},      {"acrylic glass", 1.49},     {"polypropylene", 1.49},
     {"bk7", 1.5046},      {"sodium chloride", 1.544},  {"amber", 1.55},
     {"pet", 1.575},       {"diamond", 2.419}};
+constexpr int most_nested_bsdfs = 16;
 const std::map<std::string, std::string> metals{
     {"Ag", "silver"}, {"Au", "gold"}, {"Cu", "copper"}, {"Al", "aluminium"}};
 
@@ -131,10 +132,15 @@ toml::table material_of(const pugi::xml_node& element, MitsubaScene& scene);
 
 toml::table nested_material(const MitsubaObject& bsdf, MitsubaScene& scene) {
     const auto inside = bsdf.nested("bsdf");
+    if (scene.bsdf_depth > most_nested_bsdfs)
+        bsdf.fail(fmt::format("the {} holds itself", bsdf.title()), "let no <ref> lead back to it");
     if (inside.size() != 1)
         bsdf.fail(fmt::format("the {} has {} bsdfs", bsdf.title(), inside.size()),
                   "give one; another one for the back is not supported");
-    return material_of(inside.front(), scene);
+    ++scene.bsdf_depth;
+    toml::table material = material_of(inside.front(), scene);
+    --scene.bsdf_depth;
+    return material;
 }
 
 /// The coats of Mitsuba 0.6, with the names as Mitsuba 3 would spell them.

@@ -29,6 +29,7 @@ public:
 
     /// Names of materials by the offset of their <bsdf>: each is added once.
     std::map<std::ptrdiff_t, std::string> material_names;
+    int bsdf_depth = 0; ///< of the one that is read now
 
 private:
     const MitsubaDocument& document_;

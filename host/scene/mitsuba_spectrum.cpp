@@ -215,6 +215,8 @@ void insert_mitsuba_reflectance(toml::table& into, const char* key, const Mitsub
     const pugi::xml_node element = resolved(found, scene);
     const std::string tag = element.name();
     if (tag == "texture") {
+        if (std::string(owner.element().name()) == tag)
+            refuse_form(owner, name, element, "a texture is made of colours, not of textures");
         into.insert(key, mitsuba_texture(element, scene));
     } else if (tag == "rgb") {
         const Rgb rgb = read_rgb(scene.document(), element, "value");
