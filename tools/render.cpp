@@ -211,7 +211,7 @@ void add_display_options(CLI::App& app, RenderCommand& command) {
 void add_render_command(CLI::App& program, CommandContext& context) {
     auto command = std::make_shared<RenderCommand>();
     CLI::App* app = program.add_subcommand("render", "path traces a scene to a spectral EXR");
-    app->add_option("SCENE", command->scene, "scene file (TOML)")->required();
+    app->add_option("SCENE", command->scene, "scene file (TOML, or XML of Mitsuba 3)")->required();
     app->add_option("-o,--output", command->output, "spectral EXR to write")->required();
     add_stopping_options(*app, *command);
     add_sampling_options(*app, *command);

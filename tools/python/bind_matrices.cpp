@@ -70,10 +70,9 @@ std::string plot(const ReradiationMatrix& matrix, const std::string& title) {
                           .value = matrix.fluorescent_part()});
 }
 
-py::object colour(const ReradiationMatrix& matrix, const std::string& name, bool e308,
-                  const ReradiationMatrix* against) {
+py::object colour(const ReradiationMatrix& matrix, const std::string& name, const Spectrum& light,
+                  bool e308, const ReradiationMatrix* against) {
     const ColourSum sum = e308 ? ColourSum::E308 : ColourSum::Bands;
-    const Spectrum light = illuminant(name);
     ColourReport report = colour_report(matrix, name, light, sum);
     if (against != nullptr)
         report.ciede2000 = ciede2000(report.colour.lab, colour_of_matrix(*against, light, sum).lab);

@@ -12,6 +12,7 @@ from .errors import RunError
 from .image import Image
 from .matrix import Reradiation
 from .results import BispectralData, Fit, Measurement, Synthetic
+from .spectrum import Spectrum
 from .stack import Stack
 
 MODELS = ["auto", "adding", "weidlich-wilkie", "walk"]
@@ -242,16 +243,16 @@ def _stack(stack: Any) -> Any:
     return stack._stack
 
 
-def colour(matrix: Any, illuminant: Union[str, Sequence[str]] = "D65", *, e308: bool = False,
-           against: Any = None) -> Mapping[str, Dict[str, Any]]:
+def colour(matrix: Any, illuminant: Union[str, Sequence[str], Mapping[str, Spectrum]] = "D65", *,
+           e308: bool = False, against: Any = None) -> Dict[str, Dict[str, Any]]:
     """The colour of a matrix: XYZ (perfect diffuser Y = 100), xy, Lab, whiteness, radiance factors
     and, with `against`, CIEDE2000 to another matrix.
 
     Parameters
     ----------
     matrix, against : file name or Reradiation
-    illuminant : str or list of str
-        CIE names; an unknown one lists them all.
+    illuminant : str, list of str, or dict of name and Spectrum
+        CIE names (an unknown one lists them all), or light of your own.
     e308 : bool
         Sums over 1 nm (ASTM E308, E2022) instead of plain sums over the bands (ASTM E2152).
 
@@ -270,10 +271,23 @@ def colour(matrix: Any, illuminant: Union[str, Sequence[str]] = "D65", *, e308: 
     """
     given = _matrix("matrix", matrix)
     other = None if against is None else _matrix("against", against)._matrix
-    names = [illuminant] if isinstance(illuminant, str) else list(illuminant)
     by_bands = not _checks.flag("e308", e308)
-    return {_checks.text("illuminant", name): given._matrix.colour(name, not by_bands, other)
-            for name in names}
+    return {name: given._matrix.colour(name, light._spectrum, not by_bands, other)
+            for name, light in _lights(illuminant).items()}
+
+
+def _lights(illuminant: Any) -> Dict[str, Spectrum]:
+    if isinstance(illuminant, Mapping):
+        for name, light in illuminant.items():
+            if not isinstance(light, Spectrum):
+                raise _checks.refuse(f"illuminant[{name!r}]", f"is a {type(light).__name__}",
+                                     "give a Spectrum")
+        return {_checks.text("illuminant", name): light for name, light in illuminant.items()}
+    names = [illuminant] if isinstance(illuminant, str) else illuminant
+    if not isinstance(names, (list, tuple)):
+        raise _checks.refuse("illuminant", f"is a {type(names).__name__}",
+                             "give a name, a list of names, or a dict of Spectrum")
+    return {_checks.text("illuminant", name): Spectrum.illuminant(name) for name in names}
 
 
 def _matrix(name: str, value: Any) -> Reradiation:
