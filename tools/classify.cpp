@@ -166,9 +166,7 @@ void add_classify_command(CLI::App& program, CommandContext& context) {
         ->check(CLI::IsMember({"a", "b", "c", "d", "e", "f", "g", "h"}));
     command->add_option("-o,--output", options->output,
                         "write the starting parameters as MATERIAL.toml");
-    command->footer(
-        std::string(TREE) +
-        "\nExample: reradiant classify --reflects-environment no --highlight-small yes");
+    command->footer(TREE);
     command->callback(
         [options, &context] { context.exit_code = run_classify(*options, context.common); });
 }

@@ -121,12 +121,20 @@ const std::map<std::string, std::string> texts{
 } // namespace
 
 std::string reference_text(const std::string& table, const std::string& key) {
+    std::string found;
+    std::size_t found_at = 0; // the innermost part of the name decides
     for (const auto& [name, text] : texts) {
         const std::size_t slash = name.rfind('/');
-        if (slash != std::string::npos && name.substr(slash + 1) == key &&
-            table.find(name.substr(0, slash)) != std::string::npos)
-            return text;
+        if (slash == std::string::npos || name.substr(slash + 1) != key)
+            continue;
+        const std::size_t at = table.rfind(name.substr(0, slash));
+        if (at != std::string::npos && (found.empty() || at > found_at)) {
+            found = text;
+            found_at = at;
+        }
     }
+    if (!found.empty())
+        return found;
     const auto plain = texts.find(key);
     return plain == texts.end() ? std::string() : plain->second;
 }
