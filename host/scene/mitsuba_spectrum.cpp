@@ -141,9 +141,8 @@ toml::table plugin(const pugi::xml_node& element, MitsubaScene& scene) {
         made = d65(spectrum.number_or("scale", 1.0));
     } else if (spectrum.type() == "blackbody") {
         const double kelvin = spectrum.number_or("temperature", 5000.0);
-        const double scale = spectrum.number_or("scale", 1.0);
         const Spectrum shape = Spectrum::blackbody(kelvin, planck_per_nm(kelvin, 560.0));
-        made = toml::table{{"blackbody_kelvin", kelvin}, {"scale", scale * xyz_of(shape)[1]}};
+        made = toml::table{{"blackbody_kelvin", kelvin}, {"scale", xyz_of(shape)[1]}};
     } else if (spectrum.type() == "regular" || spectrum.type() == "irregular") {
         made = sampled(spectrum);
     } else {
