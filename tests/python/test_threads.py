@@ -53,7 +53,7 @@ class Interrupts(unittest.TestCase):
     def interrupted(self, call, patience):
         """Sends SIGINT a second after the call began; the process must say so and go on."""
         program = textwrap.dedent(f"""
-            import signal, sys, time, reradiant as rr
+            import signal, reradiant as rr
             signal.signal(signal.SIGINT, signal.default_int_handler)
             print("begins", flush=True)
             try:
@@ -83,8 +83,7 @@ class Interrupts(unittest.TestCase):
     def test_fit(self):
         # Steps of a dense matrix take long; the process is quick to notice between them.
         recipe = str(EXAMPLES / "synth-orange.toml")
-        self.interrupted(f"data = rr.synth({recipe!r}, seed=1).data\n"
-                         "    while True: rr.fit(data, model='gaussians', rank=3)", 20)
+        self.interrupted(f"while True: rr.fit(rr.synth({recipe!r}, seed=1).data, rank=2)", 20)
 
 
 if __name__ == "__main__":

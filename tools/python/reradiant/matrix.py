@@ -42,10 +42,8 @@ class Reradiation:
     >>> m.values
     array([[0.5, 0. ],
            [0.2, 0.6]])
-    >>> m.energy()[0]
-    0.7
-    >>> m.photons()[0].round(3)
-    0.75
+    >>> m.energy().round(3), m.photons().round(3)
+    (array([0.7, 0.6]), array([0.75, 0.6 ]))
     """
 
     def __init__(self, values: Any, emission_nm: Any, excitation_nm: Any, *,
