@@ -64,7 +64,7 @@ void add_element(const pugi::xml_node& element, MitsubaScene& scene) {
     const std::string tag = element.name();
     if (tag == "shape")
         add_mitsuba_shape(element, scene);
-    else if (tag == "emitter")
+    else if (tag == "emitter" && element.attribute("type").as_string() != std::string("area"))
         add_mitsuba_emitter(element, scene);
     else if (tag == "sensor")
         add_mitsuba_sensor(element, scene);
@@ -72,7 +72,8 @@ void add_element(const pugi::xml_node& element, MitsubaScene& scene) {
         add_mitsuba_integrator(element, scene);
     else if (tag == "bsdf")
         mitsuba_material(element, scene);
-    else if (tag != "default" && tag != "texture" && tag != "spectrum") // used where referred to
+    else if (tag != "default" && tag != "texture" && tag != "spectrum" &&
+             tag != "emitter") // used where referred to
         scene.document().fail(element, fmt::format("<{}> is not supported", tag),
                               "a scene holds sensor, integrator, emitters, shapes, bsdfs");
 }

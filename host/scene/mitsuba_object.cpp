@@ -53,8 +53,12 @@ bool MitsubaObject::flag_or(const std::string& name, bool otherwise) const {
 }
 
 double MitsubaObject::number_or(const std::string& name, double otherwise) const {
-    const pugi::xml_node found = property(name, "float");
-    return found ? document_->number(found, "value") : otherwise;
+    const pugi::xml_node found = find(name);
+    if (!found)
+        return otherwise;
+    if (std::string(found.name()) != "integer") // a whole number is a number, too
+        property(name, "float");
+    return document_->number(found, "value");
 }
 
 int MitsubaObject::integer_or(const std::string& name, int otherwise) const {

@@ -121,8 +121,14 @@ void add_mitsuba_sensor(const pugi::xml_node& element, MitsubaScene& scene) {
 
 void add_mitsuba_integrator(const pugi::xml_node& element, MitsubaScene& scene) {
     const MitsubaObject integrator(scene.document(), element);
+    if (integrator.type() == "moment") { // variances of another integrator's image
+        for (const pugi::xml_node& inside : integrator.nested("integrator"))
+            add_mitsuba_integrator(inside, scene);
+        integrator.finish();
+        return;
+    }
     if (integrator.type() != "path" && integrator.type() != "direct")
-        integrator.refuse_type({"path", "direct"});
+        integrator.refuse_type({"path", "direct", "moment"});
     toml::table settings;
     if (integrator.type() == "direct") {
         settings.insert("max_depth", 1);
@@ -141,7 +147,7 @@ void add_mitsuba_integrator(const pugi::xml_node& element, MitsubaScene& scene) 
         integrator.document().fail(integrator.find("hide_emitters"),
                                    "hide_emitters is not supported", "leave it out");
     integrator.finish();
-    scene.table().insert("integrator", std::move(settings));
+    scene.table().insert_or_assign("integrator", std::move(settings));
 }
 
 } // namespace reradiant

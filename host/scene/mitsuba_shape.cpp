@@ -1,3 +1,4 @@
+#include "host/scene/mesh_io.h"
 #include "host/scene/mitsuba_scene.h"
 
 #include <Eigen/LU>
@@ -6,11 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace reradiant {
 
 namespace {
 
+namespace fs = std::filesystem;
 using Matrix = Eigen::Matrix4d;
 using Vector = Eigen::Vector3d;
 
@@ -67,6 +70,47 @@ toml::table disk(const MitsubaObject& shape, const Matrix& matrix, bool flipped)
                        {"radius", radius}};
 }
 
+/// The six faces of the cube from -1 to 1.
+std::vector<toml::table> cube(const Matrix& matrix) {
+    std::vector<toml::table> faces;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-1.0, 1.0})
+            faces.push_back(
+                {{"type", "rectangle"},
+                 {"center", toml_vector(column(matrix, 3) + side * column(matrix, axis))},
+                 {"edge_u", toml_vector(2.0 * side * column(matrix, (axis + 1) % 3))},
+                 {"edge_v", toml_vector(2.0 * column(matrix, (axis + 2) % 3))}});
+    return faces;
+}
+
+/// A mesh of one parallelogram as a rectangle; empty for any other.
+std::optional<toml::table> parallelogram(const MitsubaObject& shape, const Matrix& matrix,
+                                         bool flipped, const MitsubaScene& scene) {
+    const pugi::xml_node name = shape.find("filename");
+    const fs::path given = scene.document().text(name, "value");
+    const MeshShape mesh = read_mesh(scene.document().file().parent_path() / given);
+    std::vector<Vector> corners; // in the order around that two triangles of one quad have
+    for (const std::uint32_t index : mesh.indices) {
+        const Eigen::Vector3f at = Eigen::Map<const Eigen::Vector3f>(&mesh.positions[3 * index]);
+        const Vector corner = matrix.topLeftCorner<3, 3>() * at.cast<double>() + column(matrix, 3);
+        if (std::none_of(corners.begin(), corners.end(),
+                         [&](const Vector& known) { return known.isApprox(corner, 1e-6); }))
+            corners.push_back(corner);
+    }
+    if (mesh.indices.size() != 6 || corners.size() != 4)
+        return std::nullopt;
+    const Vector u = corners[1] - corners[0], v = corners[2] - corners[1];
+    if (!(corners[3] - corners[0]).isApprox(v, 1e-5))
+        return std::nullopt;
+    toml::array edge_u = toml_vector(u), edge_v = toml_vector(v);
+    if (flipped)
+        std::swap(edge_u, edge_v);
+    return toml::table{{"type", "rectangle"},
+                       {"center", toml_vector(corners[0] + 0.5 * (u + v))},
+                       {"edge_u", std::move(edge_u)},
+                       {"edge_v", std::move(edge_v)}};
+}
+
 toml::table mesh(const MitsubaObject& shape, const Matrix& matrix, MitsubaScene& scene) {
     toml::table made{{"type", "mesh"}, {"file", scene.file_name(shape, "filename")}};
     if (shape.flag_or("face_normals", false))
@@ -89,19 +133,26 @@ void require_invertible(const MitsubaObject& shape, const Matrix& matrix) {
                    "scale every axis by other than 0");
 }
 
-toml::table geometry(const MitsubaObject& shape, bool flipped, MitsubaScene& scene) {
+/// What a shape is made of, each with its type.
+std::vector<toml::table> geometry(const MitsubaObject& shape, bool flipped, MitsubaScene& scene) {
     const Matrix matrix = shape.transform_or_identity("to_world");
     require_invertible(shape, matrix);
     const std::string& type = shape.type();
     if (type == "sphere")
-        return sphere(shape, matrix);
+        return {sphere(shape, matrix)};
     if (type == "rectangle")
-        return rectangle(matrix, flipped);
+        return {rectangle(matrix, flipped)};
     if (type == "disk")
-        return disk(shape, matrix, flipped);
-    if (type == "ply" || type == "obj")
-        return mesh(shape, matrix, scene);
-    shape.refuse_type({"sphere", "rectangle", "disk", "ply", "obj"});
+        return {disk(shape, matrix, flipped)};
+    if (type == "cube")
+        return cube(matrix);
+    if (type != "ply" && type != "obj")
+        shape.refuse_type({"sphere", "rectangle", "disk", "cube", "ply", "obj"});
+    toml::table made = mesh(shape, matrix, scene);
+    if (!shape.nested("emitter").empty())
+        if (auto light = parallelogram(shape, matrix, flipped, scene))
+            return {std::move(*light)};
+    return {std::move(made)};
 }
 
 /// A shape that emits becomes a light; its bsdf is left out, lights do not reflect.
@@ -110,9 +161,10 @@ void add_area_light(const MitsubaObject& shape, const pugi::xml_node& element, t
     const MitsubaObject emitter(scene.document(), element);
     if (emitter.type() != "area")
         emitter.refuse_type({"area"});
-    if (shape.type() != "sphere" && shape.type() != "rectangle")
-        emitter.fail(fmt::format("a {} that emits is not supported", shape.type()),
-                     "let a sphere or a rectangle emit");
+    const std::string form = light["type"].value_or(std::string());
+    if (form != "sphere" && form != "rectangle")
+        shape.fail(fmt::format("a {} that emits is not supported", shape.type()),
+                   "let a sphere, a rectangle or a mesh of one parallelogram emit");
     if (shape.type() == "sphere" && flipped)
         emitter.fail("a sphere that emits inwards is not supported", "let it emit outwards");
     light.insert("radiance", mitsuba_emission(emitter, "radiance", scene));
@@ -129,17 +181,22 @@ void add_area_light(const MitsubaObject& shape, const pugi::xml_node& element, t
 void add_mitsuba_shape(const pugi::xml_node& element, MitsubaScene& scene) {
     const MitsubaObject shape(scene.document(), element);
     const bool flipped = shape.flag_or("flip_normals", false);
-    toml::table made = geometry(shape, flipped, scene);
-    const auto emitters = shape.nested("emitter");
-    if (!emitters.empty()) {
-        add_area_light(shape, emitters.front(), std::move(made), flipped, scene);
+    std::vector<toml::table> parts = geometry(shape, flipped, scene);
+    const auto emitters = shape.nested("emitter"), bsdfs = shape.nested("bsdf");
+    if (bsdfs.size() > 1 || emitters.size() > 1)
+        shape.fail(fmt::format("the {} has {} bsdfs and {} emitters", shape.title(), bsdfs.size(),
+                               emitters.size()),
+                   "give at most one of each");
+    if (emitters.empty()) {
+        const std::string material = bsdfs.empty() ? mitsuba_default_material(scene)
+                                                   : mitsuba_material(bsdfs.front(), scene);
+        for (toml::table& part : parts) {
+            part.insert("material", material);
+            scene.add("shape", std::move(part));
+        }
     } else {
-        const auto bsdfs = shape.nested("bsdf");
-        if (bsdfs.size() > 1)
-            shape.fail(fmt::format("the {} has {} bsdfs", shape.title(), bsdfs.size()), "give one");
-        made.insert("material", bsdfs.empty() ? mitsuba_default_material(scene)
-                                              : mitsuba_material(bsdfs.front(), scene));
-        scene.add("shape", std::move(made));
+        for (toml::table& part : parts)
+            add_area_light(shape, emitters.front(), std::move(part), flipped, scene);
     }
     shape.finish();
 }
