@@ -43,6 +43,7 @@ const std::map<std::string, std::string> texts{
     {"(mesh)/file", "PLY or OBJ"},
     {"(heightfield)/file", "image, its grey values are heights"},
     {"transform", "upper three rows of the matrix that moves the mesh, row after row"},
+    {"flip_v", "takes 1 - v of the file for v; row 0 of an image is at v = 1"},
     {"face_normals", "leaves the file's normals out"},
     {"material", "name of a [[material]]"},
     {"name", "what others refer to it by"},

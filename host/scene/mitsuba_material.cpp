@@ -188,7 +188,9 @@ std::string mitsuba_material(const pugi::xml_node& element, MitsubaScene& scene)
     const std::string name = scene.unique_name(
         document.has(element, "id") ? document.text(element, "id") : std::string("material"));
     scene.material_names.emplace(element.offset_debug(), name);
+    scene.texture_met.clear();
     toml::table material = material_of(element, scene);
+    scene.material_textures[name] = scene.texture_met;
     material.insert("name", name);
     scene.add("material", std::move(material));
     return name;

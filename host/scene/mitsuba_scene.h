@@ -30,6 +30,10 @@ public:
     /// Names of materials by the offset of their <bsdf>: each is added once.
     std::map<std::ptrdiff_t, std::string> material_names;
     int bsdf_depth = 0; ///< of the one that is read now
+    /// Type of the last texture that was read, and of a texture that a material uses ("image",
+    /// "checker"); empty: none.
+    std::string texture_met;
+    std::map<std::string, std::string> material_textures;
 
 private:
     const MitsubaDocument& document_;

@@ -48,11 +48,11 @@ toml::table sphere(const MitsubaObject& shape, const Matrix& matrix) {
                        {"radius", radius * uniform_scale(shape, matrix, 3)}};
 }
 
-/// -1..1 by -1..1, facing +z; edges are turned over where it faces the other way.
-toml::table rectangle(const Matrix& matrix, bool flipped) {
+/// -1..1 by -1..1, facing +z; where it faces the other way the edges of one that emits are swapped.
+toml::table rectangle(const Matrix& matrix, bool flipped, bool emits) {
     const bool mirrored = matrix.topLeftCorner<3, 3>().determinant() < 0.0;
     toml::array u = toml_vector(2.0 * column(matrix, 0)), v = toml_vector(2.0 * column(matrix, 1));
-    if (flipped != mirrored)
+    if (emits && flipped != mirrored)
         std::swap(u, v);
     return toml::table{{"type", "rectangle"},
                        {"center", toml_vector(column(matrix, 3))},
@@ -89,24 +89,33 @@ std::optional<toml::table> parallelogram(const MitsubaObject& shape, const Matri
     const pugi::xml_node name = shape.find("filename");
     const fs::path given = scene.document().text(name, "value");
     const MeshShape mesh = read_mesh(scene.document().file().parent_path() / given);
-    std::vector<Vector> corners; // in the order around that two triangles of one quad have
-    for (const std::uint32_t index : mesh.indices) {
-        const Eigen::Vector3f at = Eigen::Map<const Eigen::Vector3f>(&mesh.positions[3 * index]);
-        const Vector corner = matrix.topLeftCorner<3, 3>() * at.cast<double>() + column(matrix, 3);
-        if (std::none_of(corners.begin(), corners.end(),
-                         [&](const Vector& known) { return known.isApprox(corner, 1e-6); }))
-            corners.push_back(corner);
-    }
-    if (mesh.indices.size() != 6 || corners.size() != 4)
+    if (mesh.indices.size() != 6)
         return std::nullopt;
-    const Vector u = corners[1] - corners[0], v = corners[2] - corners[1];
-    if (!(corners[3] - corners[0]).isApprox(v, 1e-5))
+    const auto corner = [&](std::size_t k) -> Vector {
+        const Eigen::Vector3f at =
+            Eigen::Map<const Eigen::Vector3f>(&mesh.positions[3 * mesh.indices[k]]);
+        return matrix.topLeftCorner<3, 3>() * at.cast<double>() + column(matrix, 3);
+    };
+    // The corner of the one triangle that the other has not, and the other way round.
+    const auto lonely = [&](std::size_t first, std::size_t other) {
+        for (std::size_t k = first; k < first + 3; ++k)
+            if (!corner(k).isApprox(corner(other), 1e-6) &&
+                !corner(k).isApprox(corner(other + 1), 1e-6) &&
+                !corner(k).isApprox(corner(other + 2), 1e-6))
+                return k;
+        return first;
+    };
+    const std::size_t near = lonely(0, 3);
+    const Vector middle = corner(near), before = corner((near + 2) % 3),
+                 after = corner((near + 1) % 3);
+    const Vector u = middle - before, v = after - middle;
+    if (!(before + v).isApprox(corner(lonely(3, 0)), 1e-5))
         return std::nullopt;
     toml::array edge_u = toml_vector(u), edge_v = toml_vector(v);
     if (flipped)
         std::swap(edge_u, edge_v);
     return toml::table{{"type", "rectangle"},
-                       {"center", toml_vector(corners[0] + 0.5 * (u + v))},
+                       {"center", toml_vector(before + 0.5 * (u + v))},
                        {"edge_u", std::move(edge_u)},
                        {"edge_v", std::move(edge_v)}};
 }
@@ -115,7 +124,6 @@ toml::table mesh(const MitsubaObject& shape, const Matrix& matrix, MitsubaScene&
     toml::table made{{"type", "mesh"}, {"file", scene.file_name(shape, "filename")}};
     if (shape.flag_or("face_normals", false))
         made.insert("face_normals", true);
-    shape.flag_or("flip_tex_coords", true); // checked against the renderer's v by the tests
     if (!matrix.isIdentity(0.0)) {
         toml::array values;
         for (int row = 0; row < 3; ++row)
@@ -133,6 +141,25 @@ void require_invertible(const MitsubaObject& shape, const Matrix& matrix) {
                    "scale every axis by other than 0");
 }
 
+/// Mitsuba's images begin at v = 0 with their top row, this program's with the bottom row; squares
+/// of a checkerboard lie alike.
+void fit_texture(const MitsubaObject& shape, const std::string& texture, toml::table& part) {
+    const bool flips_file = shape.flag_or("flip_tex_coords", shape.type() == "obj");
+    if (texture.empty())
+        return;
+    const std::string form = part["type"].value_or(std::string());
+    if (form == "mesh") {
+        if (flips_file != (texture == "image"))
+            part.insert("flip_v", true);
+    } else if (shape.type() != "rectangle") {
+        shape.fail(fmt::format("a texture on a {} is not supported", shape.type()),
+                   "use a rectangle or a mesh");
+    } else if (texture == "image") { // its other side looks the same
+        for (toml::node& node : *part["edge_v"].as_array())
+            node.ref<double>() *= -1.0;
+    }
+}
+
 /// What a shape is made of, each with its type.
 std::vector<toml::table> geometry(const MitsubaObject& shape, bool flipped, MitsubaScene& scene) {
     const Matrix matrix = shape.transform_or_identity("to_world");
@@ -141,7 +168,7 @@ std::vector<toml::table> geometry(const MitsubaObject& shape, bool flipped, Mits
     if (type == "sphere")
         return {sphere(shape, matrix)};
     if (type == "rectangle")
-        return {rectangle(matrix, flipped)};
+        return {rectangle(matrix, flipped, !shape.nested("emitter").empty())};
     if (type == "disk")
         return {disk(shape, matrix, flipped)};
     if (type == "cube")
@@ -191,6 +218,7 @@ void add_mitsuba_shape(const pugi::xml_node& element, MitsubaScene& scene) {
         const std::string material = bsdfs.empty() ? mitsuba_default_material(scene)
                                                    : mitsuba_material(bsdfs.front(), scene);
         for (toml::table& part : parts) {
+            fit_texture(shape, scene.material_textures[material], part);
             part.insert("material", material);
             scene.add("shape", std::move(part));
         }

@@ -63,6 +63,7 @@ toml::table mitsuba_texture(const pugi::xml_node& element, MitsubaScene& scene) 
         texture.refuse_type({"bitmap", "checkerboard"});
     }
     texture.finish();
+    scene.texture_met = made["type"].value_or(std::string());
     scene.add("texture", std::move(made));
     return toml::table{{"texture", name}};
 }

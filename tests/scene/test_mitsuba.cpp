@@ -207,6 +207,33 @@ TEST_F(Mitsuba, Checkerboard) {
     EXPECT_EQ(scene.textures[0].space, TextureSpace::Uv);
 }
 
+TEST_F(Mitsuba, ImagesBeginWithTheirTopRow) {
+    // Mitsuba 3.9.1 shows an image upside down on a rectangle, and upright on an OBJ mesh.
+    std::filesystem::copy_file(std::filesystem::path(RERADIANT_SOURCE_DIR) /
+                                   "tools/examples/presets.png",
+                               folder / "image.png");
+    write("quad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 0.75\nf 1/1 2/2 3/3\n");
+    const auto with = [&](const std::string& shape, const std::string& texture) {
+        return load(R"(<bsdf type="diffuse" id="a"><texture name="reflectance" )" + texture +
+                    "</texture></bsdf><shape type=" + shape + "<ref id=\"a\"/></shape>");
+    };
+    const std::string image = R"(type="bitmap"><string name="filename" value="image.png"/>)",
+                      squares = R"(type="checkerboard">)",
+                      mesh = R"("obj"><string name="filename" value="quad.obj"/>)";
+    const auto edge = [](const Scene& scene) {
+        return std::get<RectangleShape>(scene.shapes.at(0).geometry).edge_v[1];
+    };
+    EXPECT_DOUBLE_EQ(edge(with("\"rectangle\">", image)), -2.0);
+    EXPECT_DOUBLE_EQ(edge(with("\"rectangle\">", squares)), 2.0);
+    const auto v = [](const Scene& scene) {
+        return std::get<MeshShape>(scene.shapes.at(0).geometry).texture_coordinates.at(5);
+    };
+    EXPECT_FLOAT_EQ(v(with(mesh, image)), 0.75f);
+    EXPECT_FLOAT_EQ(v(with(mesh, squares)), 0.25f);
+    EXPECT_NE(error_of([&] { with("\"sphere\">", image); }).text.find("a texture on a sphere"),
+              std::string::npos);
+}
+
 TEST_F(Mitsuba, PathDepthIsCountedFromTheLight) {
     EXPECT_EQ(load(R"(<integrator type="path"><integer name="max_depth" value="5"/></integrator>)")
                   .integrator.max_depth,
