@@ -144,9 +144,9 @@ void require_invertible(const MitsubaObject& shape, const Matrix& matrix) {
 /// Mitsuba's images begin at v = 0 with their top row, this program's with the bottom row; squares
 /// of a checkerboard lie alike.
 void fit_texture(const MitsubaObject& shape, const std::string& texture, toml::table& part) {
-    const bool flips_file = shape.flag_or("flip_tex_coords", shape.type() == "obj");
     if (texture.empty())
         return;
+    const bool flips_file = shape.flag_or("flip_tex_coords", shape.type() == "obj");
     const std::string form = part["type"].value_or(std::string());
     if (form == "mesh") {
         if (flips_file != (texture == "image"))
@@ -209,6 +209,7 @@ void add_mitsuba_shape(const pugi::xml_node& element, MitsubaScene& scene) {
     const MitsubaObject shape(scene.document(), element);
     const bool flipped = shape.flag_or("flip_normals", false);
     std::vector<toml::table> parts = geometry(shape, flipped, scene);
+    shape.flag_or("flip_tex_coords", false); // matters to textures alone
     const auto emitters = shape.nested("emitter"), bsdfs = shape.nested("bsdf");
     if (bsdfs.size() > 1 || emitters.size() > 1)
         shape.fail(fmt::format("the {} has {} bsdfs and {} emitters", shape.title(), bsdfs.size(),
