@@ -4,8 +4,9 @@
 
 namespace reradiant {
 
-/// Folder that holds `spectra/` and `kernels/`: $RERADIANT_DATA, else the source tree, else
-/// the installed share folder. Throws a run-time Error that names what was tried.
+/// Folder that holds `spectra/` and `kernels/`: $RERADIANT_DATA, else what was installed with the
+/// program or library, else the source tree, else the share folder of the configured prefix. Throws
+/// a run-time Error that names what was tried.
 std::filesystem::path data_directory();
 
 inline std::filesystem::path spectra_directory() {

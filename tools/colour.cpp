@@ -2,8 +2,7 @@
 #include "host/error.h"
 #include "host/report/json_file.h"
 #include "host/report/svg.h"
-#include "host/spectral/colour_of_matrix.h"
-#include "host/spectral/colour_polygons.h"
+#include "host/spectral/colour_report.h"
 #include "host/spectral/matrix_io.h"
 #include "tools/command.h"
 #include "tools/parse_options.h"
@@ -32,42 +31,16 @@ struct ColourOptions {
     bool e308 = false;
 };
 
-struct PolygonVerdict {
-    ColourPolygon polygon;
-    PolygonResult result;
-};
-
-/// All that is said about a matrix under one illuminant.
-struct ColourReport {
-    std::string illuminant;
-    MatrixColour colour;
-    std::optional<Whiteness> whiteness; ///< only where it is defined: D65 and C
-    std::optional<double> ciede2000;
-    std::vector<PolygonVerdict> polygons;
-    std::vector<std::string> warnings;
-
-    /// Emission band of the largest total radiance factor; NaN is never the largest.
-    std::size_t brightest_band() const {
-        std::size_t best = 0;
-        for (std::size_t o = 0; o < colour.total.size(); ++o)
-            if (!(colour.total[o] <= colour.total[best]) && !std::isnan(colour.total[o]))
-                best = o;
-        return best;
-    }
-};
-
-Spectrum illuminant_option(const std::string& name) {
+ColourReport report_of_file(const fs::path& file, const ReradiationMatrix& matrix,
+                            const std::string& name, ColourSum sum) {
+    Spectrum light;
     try {
-        return illuminant(name);
+        light = illuminant(name);
     } catch (const std::invalid_argument& error) {
         throw_input_error({}, fmt::format("--illuminant: {}", error.what()));
     }
-}
-
-MatrixColour colour_of_file(const fs::path& file, const ReradiationMatrix& matrix,
-                            const std::string& name, ColourSum sum) {
     try {
-        return colour_of_matrix(matrix, illuminant_option(name), sum);
+        return colour_report(matrix, name, light, sum);
     } catch (const std::invalid_argument& error) {
         throw_input_error({file.string()}, fmt::format("under {}, {}", name, error.what()),
                           "a colour needs emission bands in the visible, and light there");
@@ -98,55 +71,16 @@ std::vector<ColourReport> report_colours(const ColourOptions& options,
         other = read_reradiation(options.against);
     std::vector<ColourReport> reports;
     for (const std::string& name : options.illuminants) {
-        ColourReport report{.illuminant = name,
-                            .colour = colour_of_file(options.matrix, matrix, name, sum),
-                            .whiteness = {},
-                            .ciede2000 = {},
-                            .polygons = {},
-                            .warnings = colour_warnings(matrix, illuminant_option(name), name)};
-        if (name == "D65" || name == "C")
-            report.whiteness = cie_whiteness(report.colour.xyz, report.colour.white);
+        ColourReport report = report_of_file(options.matrix, matrix, name, sum);
         if (other)
-            report.ciede2000 = ciede2000(report.colour.lab,
-                                         colour_of_file(options.against, *other, name, sum).lab);
+            report.ciede2000 = ciede2000(
+                report.colour.lab, report_of_file(options.against, *other, name, sum).colour.lab);
         for (const ColourPolygon& polygon : polygons)
             if (polygon.illuminant == name)
                 report.polygons.push_back({polygon, test_polygon(polygon, report.colour)});
         reports.push_back(std::move(report));
     }
     return reports;
-}
-
-Json to_json(const ColourReport& report) {
-    const MatrixColour& colour = report.colour;
-    const std::size_t brightest = report.brightest_band();
-    Json json = {
-        {"XYZ", colour.xyz},
-        {"xy", colour.xy},
-        {"Lab", colour.lab},
-        {"white_XYZ", colour.white},
-        {"luminance_factor",
-         {{"total", colour.xyz[1] / 100.0},
-          {"reflected", colour.luminance_reflected / 100.0},
-          {"luminescent", (colour.xyz[1] - colour.luminance_reflected) / 100.0}}},
-        {"largest_beta_T", {{"value", colour.total[brightest]}, {"nm", colour.nm[brightest]}}}};
-    if (report.whiteness)
-        json.update({{"whiteness", report.whiteness->whiteness},
-                     {"tint", report.whiteness->tint},
-                     {"whiteness_within_limits", report.whiteness->within_limits}});
-    if (report.ciede2000)
-        json["ciede2000"] = *report.ciede2000;
-    for (const PolygonVerdict& verdict : report.polygons)
-        json["polygons"].push_back({{"name", verdict.polygon.name},
-                                    {"passes", verdict.result.passes()},
-                                    {"chromaticity", verdict.result.chromaticity},
-                                    {"luminance_factor", verdict.result.luminance_factor}});
-    json.update({{"nm", colour.nm},
-                 {"beta_T", colour.total},
-                 {"beta_R", colour.reflected},
-                 {"beta_L", colour.luminescent},
-                 {"warnings", report.warnings}});
-    return json;
 }
 
 void print_polygons(const ColourReport& report) {
@@ -214,7 +148,7 @@ int run_colour(const ColourOptions& options, const CommonOptions& common) {
     const std::vector<ColourReport> reports = report_colours(options, matrix);
     Json json = Json::object();
     for (const ColourReport& report : reports) {
-        json[report.illuminant] = to_json(report);
+        json[report.illuminant] = colour_report_json(report);
         for (const std::string& warning : report.warnings)
             spdlog::warn("{}: {}", options.matrix.string(), warning);
         if (!common.quiet)

@@ -1,4 +1,6 @@
+#include "host/atomic_file.h"
 #include "host/error.h"
+#include "host/scene/mitsuba_import.h"
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/text_reader.h"
 #include "tools/command.h"
@@ -6,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <sstream>
 
 namespace reradiant {
 
@@ -51,13 +54,36 @@ void convert_spectrum(const ConvertOptions& options) {
     write_spectrum(options.out, table.columns[0], table.columns[1]);
 }
 
+/// A scene of Mitsuba 3 as one of this program; files keep their places.
+void convert_scene(const ConvertOptions& options) {
+    refuse_form_options(options, "are for re-radiation matrices only");
+    if (lower_case_ending(options.out) != ".toml")
+        throw_input_error({options.out.string()}, "a scene is written as .toml", "name a .toml");
+    std::ostringstream text;
+    text << "# made of " << options.in.filename().string() << " by reradiant convert\n"
+         << toml::toml_formatter(mitsuba_scene_table(options.in, options.out.parent_path()))
+         << '\n';
+    write_text_atomically(options.out, text.str());
+}
+
+void convert(const ConvertOptions& options) {
+    if (is_mitsuba_scene(options.in))
+        convert_scene(options);
+    else if (holds_reradiation(options.in))
+        convert_matrix(options);
+    else
+        convert_spectrum(options);
+}
+
 } // namespace
 
 void add_convert_command(CLI::App& program, CommandContext& context) {
     const auto options = std::make_shared<ConvertOptions>();
     CLI::App* const command = program.add_subcommand(
-        "convert", "converts matrices (BFC, CSV, EXR) and spectra (SPD, CSV)");
-    command->add_option("IN", options->in, "matrix (.bfc, .csv, .exr) or spectrum (.spd, .csv)")
+        "convert", "converts matrices (BFC, CSV, EXR), spectra (SPD, CSV) and scenes of Mitsuba 3");
+    command
+        ->add_option("IN", options->in,
+                     "matrix (.bfc, .csv, .exr), spectrum (.spd, .csv) or Mitsuba scene (.xml)")
         ->required();
     command->add_option("OUT", options->out, "file to write; its ending says the format")
         ->required();
@@ -65,12 +91,11 @@ void add_convert_command(CLI::App& program, CommandContext& context) {
         ->check(CLI::IsMember({"per-band", "density-per-nm"}));
     command->add_option("--orientation", options->orientation, "of a matrix written as CSV")
         ->check(CLI::IsMember({"rows-emission", "rows-excitation"}));
-    command->footer("Example: reradiant convert paint.bfc paint.csv");
+    command->footer("Examples:\n"
+                    "  reradiant convert paint.bfc paint.csv\n"
+                    "  reradiant convert scene.xml scene.toml");
     command->callback([options, &context] {
-        if (holds_reradiation(options->in))
-            convert_matrix(*options);
-        else
-            convert_spectrum(*options);
+        convert(*options);
         context.exit_code = 0;
     });
 }

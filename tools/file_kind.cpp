@@ -67,6 +67,8 @@ FileKind file_kind(const fs::path& file) {
     if (ending == ".toml")
         return has_line(file, "[material]") && !has_line(file, "[film]") ? FileKind::Material
                                                                          : FileKind::Scene;
+    if (ending == ".xml")
+        return FileKind::Scene;
     if (ending == ".csv")
         return begins_as_matrix(file) ? FileKind::Matrix : FileKind::Spectrum;
     if (ending == ".exr")
@@ -76,7 +78,7 @@ FileKind file_kind(const fs::path& file) {
     if (ending == ".spd")
         return FileKind::Spectrum;
     throw_input_error({file.string()}, "has no ending that is known",
-                      "endings are .toml, .csv, .exr, .bfc, .spd");
+                      "endings are .toml, .xml, .csv, .exr, .bfc, .spd");
 }
 
 } // namespace reradiant

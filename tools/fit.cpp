@@ -1,6 +1,7 @@
 #include "host/fit/fit.h"
 #include "host/error.h"
 #include "host/fit/fit_report.h"
+#include "host/fit/fit_summary.h"
 #include "host/fit/model_file.h"
 #include "host/report/json_file.h"
 #include "host/scene/stack_file.h"
@@ -45,46 +46,6 @@ FitSettings settings_of(const FitOptions& options, const CommonOptions& common) 
     if (!options.stack.empty())
         settings.stack = load_stack(options.stack);
     return settings;
-}
-
-nlohmann::ordered_json json_of(const FitResult& result) {
-    nlohmann::ordered_json yields = nlohmann::ordered_json::array();
-    for (const QuantumYield& yield : result.quantum_yield)
-        yields.push_back({{"value", yield.value}, {"low", yield.low}, {"high", yield.high}});
-    nlohmann::ordered_json json = {{"model", fit_model_name(result.model)},
-                                   {"rank", result.rank},
-                                   {"rmse", result.rmse},
-                                   {"relative_rmse", result.relative_rmse},
-                                   {"bytes", result.bytes},
-                                   {"converged", result.trace.converged},
-                                   {"kkt", result.trace.kkt},
-                                   {"iterations", result.trace.iterations},
-                                   {"seconds", result.seconds},
-                                   {"quantum_yield", yields},
-                                   {"anti_stokes_energy", result.anti_stokes_energy},
-                                   {"stop_reason", result.trace.stop_reason},
-                                   {"smooth_nm", result.spacing_nm},
-                                   {"noise", result.noise},
-                                   {"noise_is_estimated", result.noise_is_estimated},
-                                   {"reduced_chi_squared", result.reduced_chi_squared},
-                                   {"parameters", result.parameters},
-                                   {"covariance_rank", result.covariance_rank},
-                                   {"notes", result.notes},
-                                   {"warnings", result.warnings}};
-    if (result.stack) {
-        nlohmann::ordered_json numbers = nlohmann::ordered_json::array();
-        for (std::size_t k = 0; k < result.stack->names.size(); ++k) {
-            const auto at = static_cast<Eigen::Index>(k);
-            numbers.push_back({{"name", result.stack->names[k]},
-                               {"value", result.stack->value(at)},
-                               {"sigma", result.stack->sigma(at)}});
-        }
-        json["stack"] = {{"numbers", numbers},
-                         {"rank", result.stack->rank},
-                         {"reduced_chi_squared", result.stack->reduced_chi_squared},
-                         {"ambiguities", result.stack->ambiguities}};
-    }
-    return json;
 }
 
 void print_summary(const FitOptions& options, const FitResult& result) {
@@ -139,7 +100,7 @@ int run_fit(const FitOptions& options, const CommonOptions& common) {
     }
     if (!options.report.empty())
         write_fit_report(options.report, data, result);
-    write_json(common.json, json_of(result));
+    write_json(common.json, fit_summary(result));
     if (!common.quiet)
         print_summary(options, result);
     return 0;

@@ -1,6 +1,7 @@
 #include "tools/parse_options.h"
 
 #include "host/error.h"
+#include "host/render/wavelength_text.h"
 
 #include <fmt/format.h>
 
@@ -13,8 +14,6 @@
 namespace reradiant {
 
 namespace {
-
-constexpr int most_comb_wavelengths = 4096;
 
 std::vector<std::string_view> split_at_colons(std::string_view text) {
     std::vector<std::string_view> parts;
@@ -62,24 +61,11 @@ Model parse_model_option(const std::string& text) {
 }
 
 WavelengthOptions parse_wavelengths_option(const std::string& text) {
-    const std::vector<std::string_view> parts = split_at_colons(text);
-    const std::string remedy =
-        fmt::format("write comb or comb:N with N from 1 to {}, or hero or hero:N with N from 1 to "
-                    "{}",
-                    most_comb_wavelengths, most_hero_wavelengths);
-    const bool hero = parts.front() == "hero";
-    if ((!hero && parts.front() != "comb") || parts.size() > 2)
-        throw_input_error({}, fmt::format("--wavelengths '{}' is not known", text), remedy);
-    WavelengthOptions options;
-    int& wanted = hero ? options.hero_count : options.comb_count;
-    wanted = hero ? default_hero_wavelengths : 0;
-    if (parts.size() == 1)
-        return options;
-    const auto count = number<int>(parts[1]);
-    if (!count || *count < 1 || *count > (hero ? most_hero_wavelengths : most_comb_wavelengths))
-        throw_input_error({}, fmt::format("--wavelengths '{}' has no valid count", text), remedy);
-    wanted = *count;
-    return options;
+    try {
+        return wavelengths_from_text(text);
+    } catch (const std::invalid_argument& error) {
+        throw_input_error({}, fmt::format("--wavelengths {}", error.what()));
+    }
 }
 
 SampleRange parse_sample_range_option(const std::string& text) {

@@ -3,6 +3,7 @@
 #include "host/film/merge.h"
 #include "host/film/spectral_image.h"
 #include "host/render/render_identity.h"
+#include "host/render/render_statistics.h"
 #include "host/render/renderer.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
@@ -18,13 +19,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <sys/resource.h>
 
 namespace reradiant {
 
 namespace {
-
-constexpr const char* render_identity_attribute = "reradiant:renderIdentity";
 
 struct RenderCommand {
     std::filesystem::path scene, output, png;
@@ -44,93 +42,6 @@ struct RenderCommand {
         return output.string() + ".checkpoint";
     }
 };
-
-std::uint64_t peak_memory_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-}
-
-/// Numbers that JSON has no name for become null.
-nlohmann::ordered_json finite_or_null(double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-}
-
-nlohmann::ordered_json statistics_json(const RenderResult& result, const Device& device,
-                                       const RenderCommand& command) {
-    const double rendering = result.trace_seconds + result.shade_seconds;
-    const WavelengthPlan& plan = result.plan;
-    nlohmann::ordered_json passes = nlohmann::ordered_json::array();
-    for (const RenderProgress& pass : result.passes)
-        passes.push_back({{"spp", pass.samples},
-                          {"seconds", pass.seconds},
-                          {"relmse", finite_or_null(pass.relmse)},
-                          {"relmse_low", pass.relmse_low},
-                          {"relmse_high", finite_or_null(pass.relmse_high)}});
-    nlohmann::ordered_json features;
-    for (const auto& [name, on] : result.features)
-        features[name] = on ? "on" : "off";
-    return {
-        {"spp", result.samples},
-        {"resumed_spp", result.resumed_samples},
-        {"seconds",
-         {{"setup", result.setup_seconds},
-          {"build", result.build_seconds},
-          {"trace", result.trace_seconds},
-          {"shade", result.shade_seconds},
-          {"total", result.total_seconds}}},
-        {"stage_seconds", result.stage_seconds},
-        {"paths", result.paths},
-        {"rays", result.rays},
-        {"paths_per_second", rendering > 0.0 ? static_cast<double>(result.paths) / rendering : 0.0},
-        {"relmse", finite_or_null(result.relmse)},
-        {"non_finite", result.non_finite},
-        {"device", device.info().name},
-        {"bands",
-         {{"from", plan.film.from_nm},
-          {"to", plan.film.to_nm()},
-          {"step", plan.film.step_nm},
-          {"count", plan.film.count}}},
-        {"model", command.model},
-        {"wavelengths",
-         {{"sampling", plan.hero > 0 ? "hero" : "comb"},
-          {"count", plan.hero > 0 ? plan.hero : plan.comb.count},
-          {"cells", plan.comb.count},
-          {"from", plan.comb.from_nm},
-          {"step", plan.comb.step_nm},
-          {"phases", plan.phases},
-          {"lines", plan.lanes.size() - static_cast<std::size_t>(plan.comb.count)}}},
-        {"features", features},
-        {"left_out", result.left_out},
-        {"notes", result.notes},
-        {"passes", passes},
-        {"kernels",
-         {{"built", result.build.built},
-          {"from_cache", result.build.from_cache},
-          {"source_bytes", result.build.source_bytes}}},
-        {"device_bytes", result.device_bytes},
-        {"table_bytes", result.table_bytes},
-        {"peak_memory_bytes", peak_memory_bytes()}};
-}
-
-void describe_image(RenderResult& result, const Scene& scene, const Device& device,
-                    const RenderCommand& command, const CommandContext& context) {
-    auto& attributes = result.image.attributes;
-    attributes["reradiant:scene"] = scene.file.filename().string();
-    attributes["reradiant:sceneHash"] = scene.hash;
-    attributes["reradiant:seed"] = std::to_string(command.render.seed);
-    attributes["reradiant:firstSample"] = std::to_string(command.render.first_sample);
-    attributes["reradiant:samples"] = std::to_string(result.samples);
-    attributes[sample_ranges_attribute] = sample_ranges_text(
-        {{command.render.first_sample, command.render.first_sample + result.samples}});
-    attributes[sampling_attribute] = identity_text(sampling_identity(scene, command.render));
-    attributes[render_identity_attribute] =
-        identity_digest(render_identity(scene, device, command.render));
-    attributes["reradiant:device"] = device.info().name;
-    attributes["reradiant:commandLine"] = context.command_line;
-    if (result.non_finite > 0)
-        spdlog::warn("{} samples were not finite and were left out", result.non_finite);
-}
 
 void apply_texts(RenderCommand& command, const CommonOptions& common) {
     command.render.seed = common.seed;
@@ -231,7 +142,9 @@ int run_render(RenderCommand command, const CommandContext& context) {
     }
     if (result.interrupted)
         return report_interruption(result, command);
-    describe_image(result, scene, device, command, context);
+    describe_image(result, scene, device, command.render, context.command_line);
+    if (result.non_finite > 0)
+        spdlog::warn("{} samples were not finite and were left out", result.non_finite);
     write_spectral_exr(command.output, result.image, command.display.exposure_ev);
     if (!command.png.empty()) {
         const std::size_t outside = write_display_png(command.png, result.image, command.display);
@@ -241,7 +154,7 @@ int run_render(RenderCommand command, const CommandContext& context) {
                            static_cast<std::size_t>(result.image.height));
     }
     if (!common.json.empty())
-        write_json(common.json, statistics_json(result, device, command));
+        write_json(common.json, render_statistics(result, device, command.model));
     if (!common.quiet)
         print_summary(result, command);
     return 0;
@@ -298,7 +211,7 @@ void add_display_options(CLI::App& app, RenderCommand& command) {
 void add_render_command(CLI::App& program, CommandContext& context) {
     auto command = std::make_shared<RenderCommand>();
     CLI::App* app = program.add_subcommand("render", "path traces a scene to a spectral EXR");
-    app->add_option("SCENE", command->scene, "scene file (TOML)")->required();
+    app->add_option("SCENE", command->scene, "scene file (TOML, or XML of Mitsuba 3)")->required();
     app->add_option("-o,--output", command->output, "spectral EXR to write")->required();
     add_stopping_options(*app, *command);
     add_sampling_options(*app, *command);

@@ -7,6 +7,7 @@
 #include "tools/command.h"
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
+#include "tools/reference.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -132,13 +133,27 @@ void print(const Json& value, const std::string& margin) {
 } // namespace
 
 void add_validate_command(CLI::App& program, CommandContext& context) {
-    auto file = std::make_shared<fs::path>();
+    struct Options {
+        fs::path file;
+        bool reference = false;
+    };
+    auto options = std::make_shared<Options>();
     CLI::App* const command = program.add_subcommand(
         "validate", "Checks a scene, material, re-radiation matrix, spectrum or mesh");
-    command->add_option("FILE", *file, "TOML, CSV, BFC, EXR, SPD, PLY or OBJ file")->required();
-    command->footer("Example: reradiant validate scene.toml");
-    command->callback([file, &context] {
-        const Json result = validate(*file);
+    CLI::Option_group* const what = command->add_option_group("what");
+    what->require_option(1);
+    what->add_option("FILE", options->file, "TOML, XML, CSV, BFC, EXR, SPD, PLY or OBJ file");
+    what->add_flag("--reference", options->reference,
+                   "print every key of scene and material files, as Markdown");
+    command->footer("Examples:\n"
+                    "  reradiant validate scene.toml\n"
+                    "  reradiant validate --reference > reference.md");
+    command->callback([options, &context] {
+        if (options->reference) {
+            fmt::print("{}", format_reference());
+            return;
+        }
+        const Json result = validate(options->file);
         write_json(context.common.json, result);
         if (!context.common.quiet) {
             print(result, "");

@@ -171,6 +171,7 @@ private:
     }
 
     bool must_stop() {
+        throw_if_stopped(settings_.stop);
         trace_.converged = trace_.kkt <= settings_.kkt_tolerance;
         if (trace_.converged) {
             trace_.stop_reason =

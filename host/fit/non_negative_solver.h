@@ -1,5 +1,7 @@
 #pragma once
 
+#include "host/interruption.h"
+
 #include <Eigen/Core>
 
 #include <chrono>
@@ -38,6 +40,7 @@ struct SolverSettings {
     double kkt_tolerance = 1e-8;
     double most_seconds = 60.0;
     int threads = 1;
+    StopFlag stop = nullptr; ///< asked before every step
 };
 
 /// How a minimisation went.

@@ -1,5 +1,7 @@
-#include "host/fit/synth.h"
+#include "host/fit/synth_recipe.h"
+
 #include "host/fit/synth_band.h"
+#include "host/scene/scene_table.h"
 #include "host/scene/spectrum_reader.h"
 #include "host/scene/stack_reader.h"
 
@@ -250,9 +252,11 @@ void read_instrument(const TableReader& root, SynthRecipe& recipe) {
 } // namespace
 
 SynthRecipe read_synth_recipe(const std::filesystem::path& file) {
+    return synth_recipe_from_table(read_scene_table(file), file);
+}
+
+SynthRecipe synth_recipe_from_table(const toml::table& table, const std::filesystem::path& file) {
     LoadState state;
-    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
-    const toml::table table = parse_toml(file.string(), text);
     const TableReader root(table, file.string(), "a recipe",
                            {"emission_nm", "excitation_nm", "reflectance", "fluorophore",
                             "material", "geometry", "instrument", "noise"});

@@ -28,17 +28,18 @@ void for_arrays(WalkTally& to, const WalkTally& from, const Function& f) {
 class BlockSums {
 public:
     BlockSums(const LayerWalk& walk, const kernels::Vec3& wi, std::span<const kernels::Vec3> wo,
-              std::uint64_t block_size, std::uint64_t seed)
-        : walk_(walk), wi_(wi), wo_(wo), block_size_(block_size), seed_(seed),
+              std::uint64_t block_size, std::uint64_t seed, StopFlag stop)
+        : walk_(walk), wi_(wi), wo_(wo), block_size_(block_size), seed_(seed), stop_(stop),
           sum(walk.tally(wo.size())), squares(sum) {}
     BlockSums(const BlockSums& other, tbb::split)
-        : BlockSums(other.walk_, other.wi_, other.wo_, other.block_size_, other.seed_) {}
+        : BlockSums(other.walk_, other.wi_, other.wo_, other.block_size_, other.seed_,
+                    other.stop_) {}
 
     void operator()(const tbb::blocked_range<std::uint64_t>& blocks) {
         WalkTally block = walk_.tally(wo_.size());
         for (std::uint64_t b = blocks.begin(); b != blocks.end(); ++b) {
             block.set_zero();
-            for (std::uint64_t k = 0; k < block_size_; ++k) {
+            for (std::uint64_t k = 0; k < block_size_ && !is_stopped(stop_); ++k) {
                 walk_.eval(wi_, wo_, seed_, b * block_size_ + k, block);
             }
             for_arrays(sum, block, [](auto& to, const auto& from) { to += from; });
@@ -55,6 +56,7 @@ private:
     kernels::Vec3 wi_;
     std::span<const kernels::Vec3> wo_;
     std::uint64_t block_size_, seed_;
+    StopFlag stop_;
 
 public:
     WalkTally sum, squares;
@@ -64,12 +66,13 @@ public:
 
 WalkEstimate estimate_walk(const LayerWalk& walk, const kernels::Vec3& wi,
                            std::span<const kernels::Vec3> wo, std::uint64_t samples,
-                           std::uint64_t seed) {
+                           std::uint64_t seed, StopFlag stop) {
     const std::uint64_t size =
         std::max((samples + walk_blocks - 1) / walk_blocks, std::uint64_t{1});
-    BlockSums sums(walk, wi, wo, size, seed);
+    BlockSums sums(walk, wi, wo, size, seed, stop);
     // deterministic: ranges are split alike and joined in order, whatever the threads
     tbb::parallel_deterministic_reduce(tbb::blocked_range<std::uint64_t>(0, walk_blocks, 16), sums);
+    throw_if_stopped(stop);
     const double blocks = static_cast<double>(walk_blocks);
     const double count = blocks * static_cast<double>(size);
     WalkEstimate result{sums.sum, sums.squares};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "host/interruption.h"
 #include "host/layers/walk.h"
 
 namespace reradiant {
@@ -13,9 +14,9 @@ struct WalkEstimate {
 inline constexpr std::uint64_t walk_blocks = 256;
 
 /// Estimates what LayerWalk::eval means from `samples` walks, rounded up to full blocks. Parallel;
-/// the same for a seed whatever the number of threads.
+/// the same for a seed whatever the number of threads. Interrupted when `stop` is set meanwhile.
 WalkEstimate estimate_walk(const LayerWalk& walk, const kernels::Vec3& wi,
                            std::span<const kernels::Vec3> wo, std::uint64_t samples,
-                           std::uint64_t seed);
+                           std::uint64_t seed, StopFlag stop = nullptr);
 
 } // namespace reradiant

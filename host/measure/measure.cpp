@@ -157,6 +157,7 @@ Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& su
             : adding_surface(stack, substrate, bands);
     RowWriter writer(measurement, *surface);
     for (const double theta_i : request.theta_i_deg) {
+        throw_if_stopped(request.stop);
         if (request.hemispherical) {
             writer.hemispherical(theta_i);
             continue;

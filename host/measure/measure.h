@@ -1,5 +1,6 @@
 #pragma once
 
+#include "host/interruption.h"
 #include "host/measure/surface_model.h"
 #include "host/scene/scene.h"
 
@@ -21,8 +22,9 @@ struct MeasureRequest {
     bool hemispherical = false; ///< directional-hemispherical; theta_o and phi are not used
     Model model = Model::Auto;
     std::optional<WavelengthGrid> bands; ///< empty: the matrix's own grid
-    long samples = 0;  ///< of the walk: paths for each theta_i, 0: default_walk_samples
-    unsigned seed = 0; ///< of the walk
+    long samples = 0;        ///< of the walk: paths for each theta_i, 0: default_walk_samples
+    unsigned seed = 0;       ///< of the walk
+    StopFlag stop = nullptr; ///< asked between two walks, and between two pairs of directions
 };
 
 enum class MeasuredPart { Diffuse, Specular };

@@ -99,7 +99,7 @@ Measurement measure_by_walk(const LayerStack& stack, const SubstrateValues& subs
     for (const double theta_i : request.theta_i_deg) {
         const WalkEstimate estimate =
             estimate_walk(walk, direction_at(std::cos(radians(theta_i)), 0.0), wo,
-                          static_cast<std::uint64_t>(samples), request.seed);
+                          static_cast<std::uint64_t>(samples), request.seed, request.stop);
         const WalkTally &mean = estimate.mean, &error = estimate.standard_error;
         MeasureRow angles{theta_i, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
         if (request.hemispherical) {

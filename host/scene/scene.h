@@ -187,7 +187,8 @@ struct Scene {
     std::string hash; ///< hex digest of the scene file and of every file it names
 };
 
-/// Reads a scene file with everything it names (INTERFACE, "Scene and material files"). Unknown
+/// Reads a scene file with everything it names (INTERFACE, "Scene and material files"), or an XML
+/// file of Mitsuba 3 (host/scene/mitsuba_import.h). Unknown
 /// keys, wrong types and lengths, out-of-range numbers and unreadable references throw an input
 /// Error at their place. Warnings go to the log.
 Scene load_scene(const std::filesystem::path& file);

@@ -1,4 +1,5 @@
 #include "host/scene/material_reader.h"
+#include "host/scene/mitsuba_import.h"
 #include "host/scene/scene_parts.h"
 #include "host/scene/scene_table.h"
 #include "host/scene/surface_builder.h"
@@ -142,6 +143,8 @@ Scene read_scene(const toml::table& table, const std::filesystem::path& file, Lo
 } // namespace
 
 Scene load_scene(const std::filesystem::path& file) {
+    if (is_mitsuba_scene(file))
+        return scene_from_table(mitsuba_scene_table(file, file.parent_path()), file);
     LoadState state;
     const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
     state.add_to_digest(text);
@@ -161,9 +164,11 @@ toml::table read_scene_table(const std::filesystem::path& file) {
 }
 
 Material load_material(const std::filesystem::path& file) {
+    return material_from_table(read_scene_table(file), file);
+}
+
+Material material_from_table(const toml::table& table, const std::filesystem::path& file) {
     LoadState state;
-    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
-    const toml::table table = parse_toml(file.string(), text);
     const TableReader root(table, file.string(), "a material file", {"material", "texture"});
     const toml::node& node = root.required("material");
     if (node.is_array())

@@ -1,6 +1,8 @@
 #include "host/scene/mesh_io.h"
 #include "host/scene/scene_parts.h"
 
+#include <Eigen/LU>
+
 #include <cmath>
 
 #include <fmt/format.h>
@@ -30,12 +32,50 @@ DiskShape read_disk(const TableReader& reader) {
     return disk;
 }
 
+/// The upper three rows of a matrix, row after row: moves a mesh, and its normals by the inverse
+/// transpose.
+void transform_mesh(const TableReader& reader, MeshShape& mesh) {
+    const auto values =
+        numbers_at(reader.required("transform"), reader.file(), reader.position_of_key("transform"),
+                   "transform", 12, NumberRange::within(-MAX_COORDINATE, MAX_COORDINATE));
+    const Eigen::Matrix<double, 3, 4> matrix =
+        Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(values.data());
+    const Eigen::Matrix3d linear = matrix.leftCols<3>();
+    const double size = linear.norm();
+    if (!(std::abs(linear.determinant()) > 1e-18 * size * size * size))
+        reader.fail("transform", "the transform makes the mesh flat",
+                    "scale every axis by other than 0");
+    const SourcePosition at = reader.position_of_key("transform");
+    for (std::size_t k = 0; k + 2 < mesh.positions.size(); k += 3) {
+        const Eigen::Vector3f old = Eigen::Map<const Eigen::Vector3f>(&mesh.positions[k]);
+        const Eigen::Vector3d moved = linear * old.cast<double>() + matrix.col(3);
+        for (int c = 0; c < 3; ++c)
+            mesh.positions[k + static_cast<std::size_t>(c)] =
+                mesh_coordinate(moved[c], at, "a transformed coordinate");
+    }
+    // Of a mirrored mesh the normals keep to the side that its triangles face.
+    const Eigen::Matrix3d normals =
+        linear.inverse().transpose() * (linear.determinant() < 0.0 ? -1.0 : 1.0);
+    for (std::size_t k = 0; k + 2 < mesh.normals.size(); k += 3) {
+        Eigen::Map<Eigen::Vector3f> normal(&mesh.normals[k]);
+        normal = (normals * normal.cast<double>()).normalized().cast<float>();
+    }
+}
+
 MeshShape read_mesh_key(const TableReader& reader, LoadState& state) {
     const SourcePosition at = reader.position_of_key("file");
     const std::filesystem::path file = state.resolve(reader.text("file"), at);
     const std::string bytes = read_file(file, at, MAX_MESH_BYTES);
     state.add_to_digest(bytes);
-    return parse_mesh(file, bytes);
+    MeshShape mesh = parse_mesh(file, bytes);
+    if (reader.has("transform"))
+        transform_mesh(reader, mesh);
+    if (reader.flag_or("face_normals", false))
+        mesh.normals.clear();
+    if (reader.flag_or("flip_v", false))
+        for (std::size_t k = 1; k < mesh.texture_coordinates.size(); k += 2)
+            mesh.texture_coordinates[k] = 1.0f - mesh.texture_coordinates[k];
+    return mesh;
 }
 
 int read_material_name(const TableReader& reader, const std::map<std::string, int>& materials) {
@@ -106,7 +146,7 @@ Shape read_shape(const toml::table& table, const std::string& file, std::size_t 
         const TableReader reader = keys({"file", "center", "edge_u", "edge_v", "height"});
         return finish(reader, read_heightfield(reader, state));
     }
-    const TableReader reader = keys({"file"});
+    const TableReader reader = keys({"file", "transform", "face_normals", "flip_v"});
     return finish(reader, read_mesh_key(reader, state));
 }
 

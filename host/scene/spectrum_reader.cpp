@@ -60,6 +60,8 @@ std::string form_of(const toml::table& table, const std::string& file, const std
 }
 
 Spectrum read_table(const TableReader& reader) {
+    reader.describe("nm", fmt::format("array of numbers, ascending, {}", WAVELENGTH.text()));
+    reader.describe("value", "array of numbers, as many");
     const auto nm = numbers_at(reader.required("nm"), reader.file(), reader.position_of_key("nm"),
                                "nm", 0, WAVELENGTH);
     const auto value = numbers_at(reader.required("value"), reader.file(),
@@ -97,6 +99,7 @@ Spectrum read_blackbody(const TableReader& reader) {
 /// Absorptions exceed 1: such an rgb is a multiple of the reflectance that has its hue. Where a
 /// fraction is asked for the limits of the key refuse it.
 Spectrum read_rgb(const TableReader& reader) {
+    reader.describe("rgb", "array of 3 numbers, at least 0");
     const auto rgb =
         numbers_at(reader.required("rgb"), reader.file(), reader.position_of_key("rgb"), "rgb", 3,
                    NumberRange::within(0.0, MAX_RGB));
@@ -155,7 +158,7 @@ Spectrum read_node(const toml::node& node, const std::string& file, const Source
     if (const toml::table* table = node.as_table()) {
         const std::string form = form_of(*table, file, name);
         const TableReader reader(*table, file, fmt::format("the spectrum {}", name),
-                                 keys_of_form(form));
+                                 keys_of_form(form), fmt::format("SPECTRUM by {}", form));
         Spectrum spectrum = read_form(reader, form, state);
         state.track(spectrum, at, name);
         return spectrum;
@@ -195,6 +198,11 @@ void check_limits(const Spectrum& spectrum, const SourcePosition& at, const std:
 
 Spectrum read_spectrum_key(const TableReader& table, const std::string& key,
                            const SpectrumLimits& limits, LoadState& state) {
+    table.describe(key, fmt::format("SPECTRUM, {} {}{}",
+                                    limits.low_is_allowed ? "at least" : "above", limits.low,
+                                    limits.high < SpectrumLimits::MAX_SPECTRAL_VALUE
+                                        ? fmt::format(" and at most {}", limits.high)
+                                        : std::string()));
     return read_spectrum_node(table.required(key), table.file(), table.position_of_key(key), key,
                               limits, state);
 }

@@ -1,6 +1,7 @@
 #include "host/scene/stack_file.h"
 
 #include "host/scene/load_state.h"
+#include "host/scene/scene_table.h"
 #include "host/scene/stack_reader.h"
 #include "host/scene/table_reader.h"
 #include "host/scene/textured_value.h"
@@ -8,9 +9,11 @@
 namespace reradiant {
 
 LayerStack load_stack(const std::filesystem::path& file) {
+    return stack_from_table(read_scene_table(file), file);
+}
+
+LayerStack stack_from_table(const toml::table& table, const std::filesystem::path& file) {
     LoadState state;
-    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
-    const toml::table table = parse_toml(file.string(), text);
     const TableReader root(table, file.string(), "a stack file", {"material", "texture"});
     const TableReader material =
         root.table("material", {"name", "model", "layer", "substrate", "normal", "mix"});

@@ -1,5 +1,7 @@
 #include "host/scene/table_reader.h"
 
+#include "host/scene/key_reference.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -95,9 +97,15 @@ std::vector<double> numbers_at(const toml::node& node, const std::string& file,
 }
 
 TableReader::TableReader(const toml::table& table, std::string file, std::string name,
-                         std::vector<std::string> known_keys)
+                         std::vector<std::string> known_keys, const std::string& path)
     : table_(&table), file_(std::move(file)), name_(std::move(name)),
       known_keys_(std::move(known_keys)) {
+    if (KeyReference* const reference = KeyReference::current()) {
+        path_ = path.empty() ? name_ : path;
+        if (const auto type = table["type"].value<std::string>(); type && !path_.ends_with(')'))
+            path_ += fmt::format(" ({})", *type);
+        reference->add_table(path_, known_keys_);
+    }
     const toml::key* unknown = nullptr; // the first in the file: the table is sorted by name
     const auto starts_before = [](const toml::key& a, const toml::key& b) {
         return std::pair(a.source().begin.line, a.source().begin.column) <
@@ -113,6 +121,12 @@ TableReader::TableReader(const toml::table& table, std::string file, std::string
         throw_input_error(position_of(file_, unknown->source()),
                           fmt::format("unknown key \"{}\" in {}", unknown->str(), name_),
                           suggestion(std::string(unknown->str()), known_keys_));
+}
+
+void TableReader::describe(const std::string& key, const std::string& kind,
+                           const std::string& otherwise) const {
+    if (KeyReference* const reference = KeyReference::current())
+        reference->add_key(path_, key, {kind, otherwise});
 }
 
 const toml::node* TableReader::find(const std::string& key) const {
@@ -140,15 +154,18 @@ void TableReader::fail(const std::string& key, const std::string& what_is_wrong,
 }
 
 double TableReader::number(const std::string& key, const NumberRange& range) const {
+    describe(key, fmt::format("number, {}", range.text()));
     return number_at(required(key), position_of_key(key), key, range);
 }
 
 double TableReader::number_or(const std::string& key, double otherwise,
                               const NumberRange& range) const {
+    describe(key, fmt::format("number, {}", range.text()), fmt::format("{}", otherwise));
     return has(key) ? number(key, range) : otherwise;
 }
 
 int TableReader::integer(const std::string& key, int low, int high) const {
+    describe(key, fmt::format("whole number, {} to {}", low, high));
     const toml::node& node = required(key);
     if (!node.is_integer())
         fail(key, fmt::format("{} is {}", key, toml_type_name(node)), "write a whole number");
@@ -160,10 +177,12 @@ int TableReader::integer(const std::string& key, int low, int high) const {
 }
 
 int TableReader::integer_or(const std::string& key, int otherwise, int low, int high) const {
+    describe(key, fmt::format("whole number, {} to {}", low, high), fmt::format("{}", otherwise));
     return has(key) ? integer(key, low, high) : otherwise;
 }
 
 std::string TableReader::text(const std::string& key) const {
+    describe(key, "string");
     const toml::node& node = required(key);
     if (!node.is_string())
         fail(key, fmt::format("{} is {}", key, toml_type_name(node)), "write a string");
@@ -171,11 +190,23 @@ std::string TableReader::text(const std::string& key) const {
 }
 
 std::string TableReader::text_or(const std::string& key, const std::string& otherwise) const {
+    describe(key, "string", otherwise);
     return has(key) ? text(key) : otherwise;
+}
+
+bool TableReader::flag_or(const std::string& key, bool otherwise) const {
+    describe(key, "true or false", otherwise ? "true" : "false");
+    if (!has(key))
+        return otherwise;
+    const toml::node& node = required(key);
+    if (!node.is_boolean())
+        fail(key, fmt::format("{} is {}", key, toml_type_name(node)), "write true or false");
+    return *node.value<bool>();
 }
 
 std::string TableReader::choice(const std::string& key,
                                 const std::vector<std::string>& names) const {
+    describe(key, fmt::format("one of {}", fmt::join(names, ", ")));
     const std::string given = text(key);
     if (std::find(names.begin(), names.end(), given) == names.end())
         fail(key, fmt::format("{} is \"{}\"", key, given),
@@ -184,12 +215,14 @@ std::string TableReader::choice(const std::string& key,
 }
 
 Vector3 TableReader::vector(const std::string& key) const {
+    describe(key, "array of 3 numbers");
     const auto values = numbers_at(required(key), file_, position_of_key(key), key, 3,
                                    NumberRange::within(-MAX_COORDINATE, MAX_COORDINATE));
     return {values[0], values[1], values[2]};
 }
 
 Vector3 TableReader::vector_or(const std::string& key, const Vector3& otherwise) const {
+    describe(key, "array of 3 numbers", fmt::format("[{}]", fmt::join(otherwise, ", ")));
     return has(key) ? vector(key) : otherwise;
 }
 
@@ -202,10 +235,13 @@ const toml::table& TableReader::plain_table(const std::string& key) const {
 }
 
 TableReader TableReader::table(const std::string& key, std::vector<std::string> known_keys) const {
-    return {plain_table(key), file_, fmt::format("[{}]", key), std::move(known_keys)};
+    describe(key, "table");
+    return {plain_table(key), file_, fmt::format("[{}]", key), std::move(known_keys),
+            path_.empty() ? std::string() : fmt::format("{}.{}", path_, key)};
 }
 
 std::vector<const toml::table*> TableReader::tables(const std::string& key) const {
+    describe(key, "array of tables");
     std::vector<const toml::table*> found;
     const toml::node* node = find(key);
     if (node == nullptr)
@@ -226,6 +262,8 @@ std::vector<const toml::table*> TableReader::tables(const std::string& key) cons
 
 std::string type_of_table(const toml::table& table, const std::string& file,
                           const std::string& name, const std::vector<std::string>& types) {
+    if (KeyReference* const reference = KeyReference::current())
+        reference->add_types(types);
     const auto entry = table.find("type");
     if (entry == table.end())
         throw_input_error(position_of(file, table.source()),

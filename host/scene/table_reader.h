@@ -44,8 +44,9 @@ std::vector<double> numbers_at(const toml::node& node, const std::string& file,
 class TableReader {
 public:
     /// `name` is what messages call the table, for example "[camera]".
+    /// `path` is what the reference of the format calls it, the name unless something else is said.
     TableReader(const toml::table& table, std::string file, std::string name,
-                std::vector<std::string> known_keys);
+                std::vector<std::string> known_keys, const std::string& path = {});
 
     bool has(const std::string& key) const { return find(key) != nullptr; }
     const std::string& file() const { return file_; }
@@ -55,6 +56,10 @@ public:
     SourcePosition position_of_key(const std::string& key) const;
     [[noreturn]] void fail(const std::string& key, const std::string& what_is_wrong,
                            const std::string& remedy = {}) const;
+
+    /// Tells a living KeyReference what a key takes, and its default.
+    void describe(const std::string& key, const std::string& kind,
+                  const std::string& otherwise = {}) const;
 
     /// The node of a key; fails at the table when it is missing.
     const toml::node& required(const std::string& key) const;
@@ -66,6 +71,7 @@ public:
     int integer_or(const std::string& key, int otherwise, int low, int high) const;
     std::string text(const std::string& key) const;
     std::string text_or(const std::string& key, const std::string& otherwise) const;
+    bool flag_or(const std::string& key, bool otherwise) const;
     /// One of the names given; the message lists them.
     std::string choice(const std::string& key, const std::vector<std::string>& names) const;
     /// Three numbers, each at most MAX_COORDINATE in size.
@@ -79,6 +85,7 @@ public:
 private:
     const toml::table* table_;
     std::string file_, name_;
+    std::string path_; ///< of the reference; filled only while a KeyReference lives
     std::vector<std::string> known_keys_;
 };
 

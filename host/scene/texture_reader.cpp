@@ -13,14 +13,8 @@ constexpr int MAX_LEVELS = 512;
 constexpr int MAX_OCTAVES = 16;
 
 void read_image_keys(const TableReader& reader, Texture& texture, LoadState& state) {
-    const auto flag = [&](const char* key) {
-        if (reader.has(key) && !reader.required(key).is_boolean())
-            reader.fail(key, fmt::format("{} is {}", key, toml_type_name(reader.required(key))),
-                        "write true or false");
-        return reader.has(key) && *reader.required(key).value<bool>();
-    };
-    texture.is_normal_map = flag("normal_map");
-    const bool linear = flag("linear") || texture.is_normal_map;
+    texture.is_normal_map = reader.flag_or("normal_map", false);
+    const bool linear = reader.flag_or("linear", false) || texture.is_normal_map;
     texture.image = load_image(reader.text("file"), reader.position_of_key("file"),
                                linear ? ImageEncoding::Linear : ImageEncoding::Srgb, state);
 }
@@ -40,6 +34,9 @@ Texture read_texture(const toml::table& table, const std::string& file, std::siz
     if (type == "image")
         keys.insert(keys.end(), {"file", "normal_map", "linear"});
     const TableReader reader(table, file, fmt::format("{} ({})", name, type), keys);
+    // what they hold is read where the texture is used
+    reader.describe("low", "number or SPECTRUM", "0");
+    reader.describe("high", "number or SPECTRUM", "1");
     Texture texture;
     texture.name = reader.text("name");
     texture.type = type == "noise"     ? TextureType::Noise

@@ -98,6 +98,7 @@ int read_texture_index(const TableReader& table, const std::string& key, LoadSta
 
 double read_number_key(const TableReader& table, const std::string& key, const NumberRange& range,
                        LoadState& state) {
+    table.describe(key, fmt::format("number or texture, {}", range.text()));
     const toml::node& node = table.required(key);
     if (!is_texture_reference(node))
         return table.number(key, range);
@@ -118,6 +119,8 @@ double read_number_key(const TableReader& table, const std::string& key, const N
 
 double read_number_key_or(const TableReader& table, const std::string& key, double otherwise,
                           const NumberRange& range, LoadState& state) {
+    table.describe(key, fmt::format("number or texture, {}", range.text()),
+                   fmt::format("{}", otherwise));
     return table.has(key) ? read_number_key(table, key, range, state) : otherwise;
 }
 

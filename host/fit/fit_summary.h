@@ -1,0 +1,12 @@
+#pragma once
+
+#include "host/fit/fit.h"
+
+#include <nlohmann/json.hpp>
+
+namespace reradiant {
+
+/// How a fit went and what it found besides the matrix: `--json` of `fit` (INTERFACE).
+nlohmann::ordered_json fit_summary(const FitResult& result);
+
+} // namespace reradiant

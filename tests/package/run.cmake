@@ -1,0 +1,16 @@
+# run(OUTPUT_VARIABLE COMMAND...): fails the test with all that the command said when it fails.
+function(run output)
+  execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE said ERROR_VARIABLE complained RESULT_VARIABLE code)
+  if(NOT code EQUAL 0)
+    string(JOIN " " command ${ARGN})
+    message(FATAL_ERROR "${command}: ${code}\n${said}${complained}")
+  endif()
+  set(${output} "${said}" PARENT_SCOPE)
+endfunction()
+
+# expect(TEXT PATTERN)
+function(expect text pattern)
+  if(NOT text MATCHES "${pattern}")
+    message(FATAL_ERROR "expected '${pattern}' in:\n${text}")
+  endif()
+endfunction()

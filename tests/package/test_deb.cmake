@@ -1,0 +1,17 @@
+# The Debian package holds program, library, headers and data, and names what it depends on.
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+file(REMOVE_RECURSE ${WORK})
+run(said cpack --config ${BUILD}/CPackConfig.cmake -B ${WORK})
+file(GLOB package ${WORK}/*.deb)
+run(fields dpkg-deb --field ${package})
+expect("${fields}" "Package: reradiant\n")
+expect("${fields}" "Depends: [^\n]*opencl-icd")
+run(files dpkg-deb --contents ${package})
+foreach(file /usr/bin/reradiant libreradiant.so. /usr/include/reradiant/host/error.h
+             /reradiantConfig.cmake /reradiant.pc /usr/share/reradiant/kernels/gather.cl
+             /usr/share/reradiant/spectra/illuminants/D65.csv)
+  expect("${files}" "${file}")
+endforeach()
+if(files MATCHES "/debian/|_library")
+  message(FATAL_ERROR "the package holds what it should not:\n${files}")
+endif()

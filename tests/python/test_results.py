@@ -1,0 +1,149 @@
+"""The functions give what the program gives."""
+
+import csv
+import json
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+
+import reradiant as rr
+from scenes import EXAMPLES, PROGRAM, material_scene, sphere_scene
+
+
+class AgainstTheProgram(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def program(self, *arguments):
+        subprocess.run([PROGRAM, *map(str, arguments), "--quiet"], check=True, cwd=self.folder)
+
+    def test_render(self):
+        scene = EXAMPLES / "fluorescent-smooth.toml"
+        self.program("render", scene, "-o", "a.exr", "--spp", 2, "--seed", 7, "--json", "a.json",
+                     "--bands", "300:780:40", "--variance", "bands")
+        image = rr.render(scene, spp=2, seed=7, bands=(300, 780, 40), band_variance=True)
+        file = rr.Image.read(self.folder / "a.exr")
+        np.testing.assert_array_equal(image.values, file.values)
+        np.testing.assert_array_equal(image.variance, file.variance)
+        np.testing.assert_array_equal(image.nm, np.arange(300, 781, 40))
+        told = json.loads((self.folder / "a.json").read_text())
+        self.assertEqual(told.keys(), image.statistics.keys())
+        self.assertEqual(told["left_out"], image.statistics["left_out"])
+        image.write(self.folder / "b.exr")
+        again = rr.Image.read(self.folder / "b.exr")
+        np.testing.assert_array_equal(again.values, file.values)
+        self.assertEqual(again.attributes["reradiant:sceneHash"],
+                         file.attributes["reradiant:sceneHash"])
+        self.assertEqual(image.compare(file)["relmse"], 0.0)
+
+    def test_display_image(self):
+        image = rr.render(sphere_scene(), spp=1, bands=(400, 700, 100))
+        png = image._repr_png_()
+        self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
+        image.write_png(self.folder / "a.png")
+        self.assertEqual(png, (self.folder / "a.png").read_bytes())
+        self.assertEqual(image.srgb().shape, (12, 16, 3))
+
+    def test_measure(self):
+        self.program("measure", "--preset", "fluorescent-orange-smooth", "-o", "m.csv",
+                     "--theta-i", "0,45", "--theta-o", "20", "--phi", "180", "--bands",
+                     "300:780:40")
+        found = rr.measure(preset="fluorescent-orange-smooth", theta_i=[0, 45], theta_o=20, phi=180,
+                           bands=(300, 780, 40))
+        with open(self.folder / "m.csv", newline="") as stream:
+            rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
+        self.assertEqual(len(rows), len(found))
+        np.testing.assert_allclose([float(row["value"]) for row in rows], found.value, rtol=1e-11)
+        np.testing.assert_array_equal([row["part"] == "specular" for row in rows], found.specular)
+        matrix = found.matrix(45, 20, 180)
+        self.assertEqual(matrix.shape, (13, 13))
+        self.assertTrue((np.triu(matrix, 1) == 0).all() and (np.tril(matrix, -1) > 0).any())
+        with self.assertRaises(rr.InputError):
+            found.matrix(46, 20, 180)
+
+    def test_synth_fit_and_colour(self):
+        recipe = EXAMPLES / "synth-orange.toml"
+        self.program("synth", recipe, "-o", "d.csv", "--truth", "t.csv", "--seed", 3)
+        made = rr.synth(recipe, seed=3)
+        np.testing.assert_allclose(made.truth.values,
+                                   rr.Reradiation.read(self.folder / "t.csv").values, rtol=1e-15)
+        made.data.write(self.folder / "d2.csv")
+        self.assertEqual((self.folder / "d.csv").read_bytes(), (self.folder / "d2.csv").read_bytes())
+        self.program("fit", "d.csv", "-o", "f.csv", "--rank", 1, "--json", "f.json")
+        fitted = rr.fit(self.folder / "d.csv", rank=1)
+        np.testing.assert_allclose(fitted.matrix.values,
+                                   rr.Reradiation.read(self.folder / "f.csv").values, rtol=1e-12)
+        told = json.loads((self.folder / "f.json").read_text())
+        self.assertEqual(told["quantum_yield"], fitted.summary["quantum_yield"])
+        self.assertEqual(fitted.emission.shape, (41, 1))
+        self.program("colour", "f.csv", "--illuminant", "D65,A", "--json", "c.json")
+        self.assertEqual(json.loads((self.folder / "c.json").read_text()),
+                         rr.colour(fitted.matrix, ["D65", "A"]))
+        html = fitted._repr_html_()
+        self.assertTrue(html.startswith("<svg") and html.rstrip().endswith("</svg>"))
+
+
+class Objects(unittest.TestCase):
+    def test_matrix_in_a_scene_is_what_the_file_is(self):
+        nm = np.arange(380, 781, 20)
+        orange = rr.Reradiation.from_fluorophores(
+            [(0.8 * rr.Spectrum.gaussian(440, 40), rr.Spectrum.gaussian(580, 25), 0.9)],
+            rr.Spectrum.constant(0.05), emission_nm=nm, excitation_nm=nm)
+        scene = material_scene({"substrate": {"type": "lambert", "reradiation": orange}})
+        from_object = rr.render(scene, spp=1, seed=2)
+        with tempfile.TemporaryDirectory() as folder:
+            orange.write(pathlib.Path(folder) / "orange.csv")
+            scene["material"][0]["substrate"]["reradiation"] = {"file": "orange.csv"}
+            from_file = rr.render(scene, spp=1, seed=2, folder=folder)
+        np.testing.assert_array_equal(from_object.values, from_file.values)
+
+    def test_spectrum_in_a_scene(self):
+        lamp = rr.Spectrum([400, 600, 700], [1, 3, 2]) + rr.Spectrum.line(546, 1, 50)
+        bands = (400, 700, 10)
+        sky = rr.render(sphere_scene(light=[{"type": "environment", "radiance": lamp}], shape=[]),
+                        spp=1, bands=bands)
+        found = sky.values[0, 0]
+        expected = [lamp.average(nm - 5, nm + 5) for nm in sky.nm]
+        # One sample of a band's wavelengths: linear between, so within the change over a band.
+        np.testing.assert_allclose(found, expected, atol=0.11)
+
+    def test_values_are_views(self):
+        image = rr.Image(np.zeros((2, 3, 4), np.float32), [400, 410, 420, 430])
+        image.values[1, 2, 3] = 5
+        self.assertEqual(image.values[1, 2, 3], 5)
+        self.assertEqual(image.values.dtype, np.float32)
+        self.assertTrue(np.shares_memory(image.values, image.values))
+        matrix = rr.Reradiation(np.eye(2), [400, 500], [400, 500])
+        self.assertTrue(np.shares_memory(matrix.values, matrix.values))
+        with self.assertRaises(ValueError):
+            matrix.values[0, 0] = 2
+
+    def test_density_form(self):
+        nm = np.arange(400, 441, 10)
+        density = np.diag(np.full(5, 0.3)) + np.tril(np.full((5, 5), 0.002), -1)
+        per_band = rr.Reradiation(density, nm, nm, quantity="density-per-nm").values
+        np.testing.assert_allclose(per_band, np.where(np.eye(5) > 0, 0.3, 10 * density))
+
+    def test_stack_over_a_matrix_solves_the_series(self):
+        nm = np.arange(400, 601, 50)
+        matrix = rr.Reradiation(0.6 * np.eye(5) + np.tril(np.full((5, 5), 0.05), -1), nm, nm)
+        glass = rr.Stack([{"ior": 1.5}])
+        r = np.diag(glass.internal_reflectance(nm))
+        series, term = np.zeros((5, 5)), np.array(matrix.values)
+        for _ in range(200):
+            series, term = series + term, matrix.values @ r @ term
+        np.testing.assert_allclose(glass.over(matrix), series, rtol=1e-12)
+
+    def test_warnings_reach_the_logger(self):
+        scene = sphere_scene(light=[{"type": "environment",
+                                     "radiance": {"nm": [450, 600], "value": [1, 1]}}])
+        with self.assertLogs("reradiant", "WARNING") as logs:
+            rr.render(scene, spp=1, bands=(400, 700, 100))
+        self.assertIn("450", logs.output[0])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,133 @@
+#include "host/fit/fit.h"
+#include "host/fit/fit_report.h"
+#include "host/fit/fit_summary.h"
+#include "host/fit/synth.h"
+#include "host/fit/synth_recipe.h"
+#include "tools/python/bindings.h"
+#include "tools/python/call.h"
+#include "tools/python/values.h"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+namespace py = pybind11;
+
+namespace reradiant::python {
+
+namespace {
+
+using DataPointer = std::shared_ptr<BispectralData>;
+
+/// What a fit needs for its report, too.
+struct Fit {
+    BispectralData data;
+    FitResult result;
+};
+
+DataPointer data_from_matrix(const ReradiationMatrix& matrix, const std::string& name) {
+    auto data = std::make_shared<BispectralData>();
+    data->file = name;
+    data->emission = matrix.emission;
+    data->excitation = matrix.excitation;
+    data->anti_stokes_allowed = matrix.anti_stokes_allowed;
+    data->geometry = matrix.geometry;
+    data->blocks.push_back({std::nullopt, matrix.values,
+                            Eigen::MatrixXd::Constant(matrix.values.rows(), matrix.values.cols(),
+                                                      std::numeric_limits<double>::quiet_NaN())});
+    return data;
+}
+
+FitSettings settings_from(const py::dict& given) {
+    FitSettings settings;
+    settings.model = fit_model_from_name(given["model"].cast<std::string>());
+    settings.loss = robust_loss_from_name(given["loss"].cast<std::string>());
+    settings.rank = given["rank"].cast<std::optional<int>>();
+    settings.smooth_nm = given["smooth_nm"].cast<std::optional<double>>();
+    settings.spill_nm = given["spill_nm"].cast<std::optional<double>>();
+    settings.anti_stokes = given["anti_stokes"].cast<bool>();
+    settings.unknown = unknown_layers_from_names(given["unknown"].cast<std::vector<std::string>>());
+    settings.seed = given["seed"].cast<unsigned>();
+    settings.solver.most_seconds = given["most_seconds"].cast<double>();
+    settings.solver.most_iterations = given["most_iterations"].cast<int>();
+    settings.solver.threads = std::max(1, given["threads"].cast<int>());
+    if (!given["stack"].is_none())
+        settings.stack = given["stack"].cast<LayerStack>();
+    return settings;
+}
+
+std::shared_ptr<Fit> fit_data(const BispectralData& data, const py::dict& given) {
+    FitSettings settings = settings_from(given);
+    return std::make_shared<Fit>(interruptible([&](StopFlag stop) {
+        settings.solver.stop = stop;
+        return Fit{data, fit_reradiation(data, settings)};
+    }));
+}
+
+py::tuple synthesise_recipe(const py::object& recipe, unsigned seed) {
+    const Source source = source_from(recipe);
+    const auto made = interruptible([&](StopFlag) {
+        const SynthRecipe read = source.table ? synth_recipe_from_table(*source.table, source.file)
+                                              : read_synth_recipe(source.file);
+        return std::pair(synthesise(read, seed), synth_truth(read));
+    });
+    return py::make_tuple(std::make_shared<BispectralData>(made.first.data),
+                          std::make_shared<ReradiationMatrix>(made.second), made.first.peak,
+                          made.first.noise_rms);
+}
+
+py::list blocks_of(const BispectralData& data) {
+    py::list blocks;
+    for (const BispectralBlock& block : data.blocks) {
+        const auto& at = block.geometry;
+        const py::object geometry =
+            at ? py::object(py::make_tuple(at->theta_i_deg, at->theta_o_deg, at->phi_deg))
+               : py::object(py::none());
+        blocks.append(py::make_tuple(geometry, block.value, block.sigma));
+    }
+    return blocks;
+}
+
+void bind_data(py::module_& module) {
+    py::class_<BispectralData, DataPointer>(module, "BispectralData")
+        .def_static("read",
+                    [](const std::string& file) {
+                        return std::make_shared<BispectralData>(read_bispectral_data(file));
+                    })
+        .def_static("from_matrix", &data_from_matrix)
+        .def_property_readonly("emission",
+                               [](const BispectralData& d) { return grid_tuple(d.emission); })
+        .def_property_readonly("excitation",
+                               [](const BispectralData& d) { return grid_tuple(d.excitation); })
+        .def_readonly("anti_stokes_allowed", &BispectralData::anti_stokes_allowed)
+        .def("blocks", &blocks_of)
+        .def("write", [](const BispectralData& d, const std::string& file) {
+            write_bispectral_data(file, d);
+        });
+}
+
+} // namespace
+
+void bind_fit(py::module_& module) {
+    bind_data(module);
+    py::class_<Fit, std::shared_ptr<Fit>>(module, "Fit")
+        .def_property_readonly(
+            "matrix",
+            [](const Fit& fit) { return std::make_shared<ReradiationMatrix>(fit.result.matrix); })
+        .def_property_readonly("sigma", [](const Fit& fit) { return fit.result.sigma; })
+        .def_property_readonly("emission", [](const Fit& fit) { return fit.result.emission.value; })
+        .def_property_readonly("excitation",
+                               [](const Fit& fit) { return fit.result.excitation.value; })
+        .def_property_readonly("failure", [](const Fit& fit) { return fit.result.failure; })
+        .def("summary", [](const Fit& fit) { return python_value(fit_summary(fit.result)); })
+        .def("write_report", [](const Fit& fit, const std::string& file) {
+            write_fit_report(file, fit.data, fit.result);
+        });
+    module.def("fit", &fit_data);
+    module.def("synthesise", &synthesise_recipe);
+}
+
+} // namespace reradiant::python

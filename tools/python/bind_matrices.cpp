@@ -1,0 +1,115 @@
+#include "host/report/svg.h"
+#include "host/spectral/colour_report.h"
+#include "host/spectral/matrix_io.h"
+#include "host/spectral/reradiation.h"
+#include "tools/python/bindings.h"
+#include "tools/python/values.h"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+
+namespace py = pybind11;
+
+namespace reradiant::python {
+
+namespace {
+
+using MatrixPointer = std::shared_ptr<ReradiationMatrix>;
+
+MatrixPointer make_matrix(const Eigen::MatrixXd& values, const py::tuple& emission,
+                          const py::tuple& excitation, bool measured, bool anti_stokes) {
+    auto matrix = std::make_shared<ReradiationMatrix>();
+    matrix->values = values;
+    matrix->emission = grid_from(emission);
+    matrix->excitation = grid_from(excitation);
+    matrix->kind = measured ? MatrixKind::Measured : MatrixKind::Model;
+    matrix->anti_stokes_allowed = anti_stokes;
+    return matrix;
+}
+
+MatrixPointer from_fluorophores(const py::list& fluorophores, const Spectrum& reflectance,
+                                const py::tuple& emission, const py::tuple& excitation) {
+    std::vector<Fluorophore> parts;
+    for (const py::handle entry : fluorophores) {
+        const auto one = entry.cast<py::tuple>();
+        parts.push_back({one[0].cast<Spectrum>(), one[1].cast<Spectrum>(), one[2].cast<double>()});
+    }
+    return std::make_shared<ReradiationMatrix>(
+        matrix_from_fluorophores(parts, reflectance, grid_from(emission), grid_from(excitation)));
+}
+
+py::tuple factorise(const ReradiationMatrix& matrix, int rank, double tolerance) {
+    const MaskedFactors factors =
+        factorise_lower(fluorescence_on_cells(matrix, matrix.emission), rank, tolerance);
+    return py::make_tuple(factors.emission, factors.excitation, factors.relative_error);
+}
+
+/// The repaired matrix, and sentences on what was changed or breaks the photon balance.
+py::tuple repaired(const ReradiationMatrix& matrix) {
+    auto copy = std::make_shared<ReradiationMatrix>(matrix);
+    std::vector<std::string> warnings;
+    const std::string changes = repair_for_rendering(*copy, warnings).text();
+    if (!changes.empty())
+        warnings.insert(warnings.begin(), changes);
+    return py::make_tuple(copy, warnings);
+}
+
+py::tuple balance(const ReradiationMatrix& matrix) {
+    const ColumnBalance sums = column_balance(matrix);
+    return py::make_tuple(to_array(sums.radiant), to_array(sums.photons));
+}
+
+std::string plot(const ReradiationMatrix& matrix, const std::string& title) {
+    return svg::heat_map({.title = title,
+                          .x_label = "excitation / nm",
+                          .y_label = "emission / nm",
+                          .x = matrix.excitation.centres_nm(),
+                          .y = matrix.emission.centres_nm(),
+                          .value = matrix.fluorescent_part()});
+}
+
+py::object colour(const ReradiationMatrix& matrix, const std::string& name, const Spectrum& light,
+                  bool e308, const ReradiationMatrix* against) {
+    const ColourSum sum = e308 ? ColourSum::E308 : ColourSum::Bands;
+    ColourReport report = colour_report(matrix, name, light, sum);
+    if (against != nullptr)
+        report.ciede2000 = ciede2000(report.colour.lab, colour_of_matrix(*against, light, sum).lab);
+    return python_value(colour_report_json(report));
+}
+
+} // namespace
+
+void bind_matrices(py::module_& module) {
+    py::class_<ReradiationMatrix, MatrixPointer>(module, "ReradiationMatrix")
+        .def(py::init(&make_matrix))
+        .def_static("from_fluorophores", &from_fluorophores)
+        .def_static("read",
+                    [](const std::string& file) {
+                        return std::make_shared<ReradiationMatrix>(read_reradiation(file));
+                    })
+        .def("write", [](const ReradiationMatrix& matrix,
+                         const std::string& file) { write_reradiation(file, matrix); })
+        .def_property_readonly(
+            "values", [](ReradiationMatrix& matrix) -> Eigen::MatrixXd& { return matrix.values; },
+            py::return_value_policy::reference_internal)
+        .def_property_readonly(
+            "emission", [](const ReradiationMatrix& matrix) { return grid_tuple(matrix.emission); })
+        .def_property_readonly(
+            "excitation",
+            [](const ReradiationMatrix& matrix) { return grid_tuple(matrix.excitation); })
+        .def_property_readonly(
+            "measured",
+            [](const ReradiationMatrix& matrix) { return matrix.kind == MatrixKind::Measured; })
+        .def_readonly("anti_stokes_allowed", &ReradiationMatrix::anti_stokes_allowed)
+        .def("reflectance", &ReradiationMatrix::reflectance)
+        .def("fluorescent_part", &ReradiationMatrix::fluorescent_part)
+        .def("balance", &balance)
+        .def("repaired", &repaired)
+        .def("factorise", &factorise)
+        .def("colour", &colour)
+        .def("plot", &plot);
+}
+
+} // namespace reradiant::python

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+/// What each part of the library adds to the module `reradiant._library`. These functions trust
+/// their arguments; the Python files beside them check what users give.
+namespace reradiant::python {
+
+void bind_spectra(pybind11::module_& module);
+void bind_matrices(pybind11::module_& module);
+void bind_stacks(pybind11::module_& module);
+void bind_images(pybind11::module_& module);
+void bind_render(pybind11::module_& module);
+void bind_measure(pybind11::module_& module);
+void bind_fit(pybind11::module_& module);
+
+} // namespace reradiant::python

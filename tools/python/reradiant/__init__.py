@@ -1,0 +1,23 @@
+"""Renders, measures and fits layered materials that fluoresce.
+
+`render`, `measure`, `synth`, `fit` and `colour` do what the program's commands of these names do,
+on files or on dicts of the same form; `Spectrum`, `Reradiation`, `Stack` and `Image` hold what they
+work on and show themselves in notebooks. Wavelengths are in nm, angles in degrees. The equations and
+their sources are in the project's README.
+"""
+
+from . import _library, colour_science
+from .errors import Error, InputError, RunError
+from .functions import colour, devices, fit, measure, presets, render, synth
+from .image import Image
+from .matrix import Reradiation
+from .results import BispectralData, Fit, Measurement, Synthetic
+from .spectrum import Spectrum
+from .stack import Stack
+
+__version__ = _library.version
+__all__ = [
+    "BispectralData", "Error", "Fit", "Image", "InputError", "Measurement", "Reradiation", "RunError",
+    "Spectrum", "Stack", "Synthetic", "colour", "colour_science", "devices", "fit", "measure",
+    "presets", "render", "synth",
+]

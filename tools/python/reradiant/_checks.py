@@ -1,0 +1,152 @@
+"""Checks of arguments. Every message begins with the argument's name and ends with a remedy."""
+
+from __future__ import annotations
+
+import math
+import numbers
+import os
+from typing import Any, Optional, Sequence
+
+import numpy as np
+
+from .errors import InputError
+
+LARGEST_SEED = 2**32 - 1
+
+
+def refuse(name: str, what: str, remedy: str) -> InputError:
+    return InputError(f"{name} {what}; {remedy}")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (numbers.Real, np.integer, np.floating)) and not isinstance(
+        value, (bool, np.bool_))
+
+
+def number(name: str, value: Any, low: float = -math.inf, high: float = math.inf,
+           above: bool = False) -> float:
+    """A finite number from `low` (beyond it if `above`) to `high`."""
+    if not _is_number(value):
+        raise refuse(name, f"is {_kind(value)}", "give a number")
+    try:
+        given = float(value)
+    except OverflowError:
+        given = math.inf
+    if not math.isfinite(given) or given < low or given > high or (above and given == low):
+        bounds = [f"{'above' if above else 'at least'} {low:g}"] if low > -math.inf else []
+        bounds += [f"at most {high:g}"] if high < math.inf else []
+        raise refuse(name, f"is {given}", f"it must be {' and '.join(bounds) or 'finite'}")
+    return given
+
+
+def integer(name: str, value: Any, low: int, high: int) -> int:
+    if not _is_number(value) or not isinstance(value, (numbers.Integral, np.integer)):
+        raise refuse(name, f"is {_kind(value)}", "give a whole number")
+    if not low <= int(value) <= high:
+        raise refuse(name, f"is {value}", f"it must be from {low} to {high}")
+    return int(value)
+
+
+def seed(value: Any) -> int:
+    return integer("seed", value, 0, LARGEST_SEED)
+
+
+def flag(name: str, value: Any) -> bool:
+    if not isinstance(value, (bool, np.bool_)):
+        raise refuse(name, f"is {_kind(value)}", "give True or False")
+    return bool(value)
+
+
+def text(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise refuse(name, f"is {_kind(value)}", "give a str")
+    if "\0" in value:
+        raise refuse(name, "holds a zero character", "leave it out")
+    return value
+
+
+def choice(name: str, value: Any, names: Sequence[str]) -> str:
+    if text(name, value) not in names:
+        raise refuse(name, f"is {value!r}", f"use one of: {', '.join(names)}")
+    return value
+
+
+def path(name: str, value: Any) -> str:
+    if not isinstance(value, (str, os.PathLike)):
+        raise refuse(name, f"is {_kind(value)}", "give a file name (str or pathlib.Path)")
+    file = os.fspath(value)
+    if isinstance(file, bytes):
+        file = os.fsdecode(file)
+    if not file:
+        raise refuse(name, "is empty", "give a file name")
+    return text(name, file)
+
+
+def array(name: str, value: Any, dimensions: int, finite: bool = True) -> np.ndarray:
+    """Real numbers as float64; a copy only where the type or the layout asks for one."""
+    try:
+        given = np.asarray(value)
+    except ValueError:
+        raise refuse(name, "has rows of different lengths", "give a rectangular array") from None
+    if given.dtype.kind not in "iuf":
+        raise refuse(name, f"has dtype {given.dtype}", "give real numbers")
+    if given.ndim != dimensions:
+        raise refuse(name, f"has shape {given.shape}", f"give {dimensions} dimension(s)")
+    if given.size == 0:
+        raise refuse(name, "is empty", "give at least one number")
+    if finite and not np.isfinite(given).all():
+        at = tuple(int(k) for k in np.argwhere(~np.isfinite(given))[0])
+        raise refuse(name, f"is {given[at]} at {list(at)}", "give finite numbers")
+    return np.ascontiguousarray(given, dtype=np.float64)
+
+
+def angles(name: str, value: Any, high: float, high_is_allowed: bool) -> np.ndarray:
+    """Degrees from 0 to `high`; one number is a list of one."""
+    given = array(name, [value] if _is_number(value) else value, 1)
+    outside = (given < 0) | (given > high if high_is_allowed else given >= high)
+    if outside.any():
+        raise refuse(name, f"holds {given[outside][0]}",
+                     f"angles are degrees from 0 {'to' if high_is_allowed else 'to below'} {high:g}")
+    return given
+
+
+def grid(name: str, centres: Any) -> tuple:
+    """(first centre, step, count) of centres in nm that ascend in equal steps."""
+    nm = array(name, centres, 1)
+    if nm.size == 1:
+        return float(nm[0]), 1.0, 1
+    step = (nm[-1] - nm[0]) / (nm.size - 1)
+    uneven = np.abs(nm - (nm[0] + step * np.arange(nm.size))) > 1e-6 * abs(step)
+    if not step > 0 or uneven.any() or not nm[0] > 0:
+        raise refuse(name, "does not ascend in equal steps from above 0",
+                     "give the centres of equal bands in nm")
+    return float(nm[0]), float(step), int(nm.size)
+
+
+def bands(value: Any) -> Optional[tuple]:
+    """(from, to, step) in nm, both ends centres of bands, as (from, step, count)."""
+    if value is None:
+        return None
+    given = array("bands", value, 1)
+    if given.size != 3:
+        raise refuse("bands", f"has {given.size} numbers", "give (from, to, step) in nm")
+    first, last, step = (float(x) for x in given)
+    if not step > 0 or not first > 0 or last < first:
+        raise refuse("bands", f"is ({first:g}, {last:g}, {step:g})",
+                     "from must be above 0, to at least from, and step above 0")
+    count = round((last - first) / step) + 1
+    if abs(first + (count - 1) * step - last) > 1e-6 * step or count > 100000:
+        raise refuse("bands", f"from {first:g} to {last:g} is no whole number of steps of {step:g}",
+                     "from and to are centres, a whole number of steps apart")
+    return first, step, count
+
+
+def centres(numbers: tuple) -> np.ndarray:
+    """The centres in nm of (first centre, step, count)."""
+    first, step, count = numbers
+    return first + step * np.arange(count)
+
+
+def _kind(value: Any) -> str:
+    kind = type(value).__name__
+    return f"an {kind}" if kind[:1] in "aeiou" else f"a {kind}"
