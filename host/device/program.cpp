@@ -90,12 +90,10 @@ cl::Program compile(const Device& device, const std::string& file, const std::st
     return program;
 }
 
-} // namespace
-
-cl::Program build_program(const Device& device, const std::string& file,
-                          const KernelDefines& defines, BuildStatistics* statistics) {
+/// `source` is complete; `file` is what it is called.
+cl::Program build_source(const Device& device, const std::string& file, const std::string& source,
+                         BuildStatistics* statistics) {
     const auto start = std::chrono::steady_clock::now();
-    const std::string source = kernel_source(data_directory(), file, defines);
     const DeviceInfo& info = device.info();
     const std::string key =
         text_digest(fmt::format("{}\n{}\n{}\n{}\n{}\n{}", source, build_options, info.name,
@@ -114,6 +112,20 @@ cl::Program build_program(const Device& device, const std::string& file,
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     return program;
+}
+
+} // namespace
+
+cl::Program build_program(const Device& device, const std::string& file,
+                          const KernelDefines& defines, BuildStatistics* statistics) {
+    return build_source(device, file, kernel_source(data_directory(), file, defines), statistics);
+}
+
+cl::Program build_program_from_text(const Device& device, const std::string& name,
+                                    const std::string& text, const KernelDefines& defines,
+                                    BuildStatistics* statistics) {
+    return build_source(device, name, kernel_source_of_text(data_directory(), name, text, defines),
+                        statistics);
 }
 
 void Kernel::launch(const Device& device, std::size_t items) const {

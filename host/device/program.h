@@ -23,6 +23,11 @@ struct BuildStatistics {
 cl::Program build_program(const Device& device, const std::string& file,
                           const KernelDefines& defines, BuildStatistics* statistics = nullptr);
 
+/// The same for a source that is no file.
+cl::Program build_program_from_text(const Device& device, const std::string& name,
+                                    const std::string& text, const KernelDefines& defines,
+                                    BuildStatistics* statistics = nullptr);
+
 /// A kernel with its launch size. Arguments are bound in order by one call.
 class Kernel {
 public:
