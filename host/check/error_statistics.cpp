@@ -62,8 +62,10 @@ ItemError item_error(const CheckedFunction& function, const CheckTables& tables,
         item.budgets[k] =
             static_cast<float>(tracked::undecided ? tracked::unbounded : out[k].error);
     }
-    item.open = (tracked::undecided && item.of_budget > 1.0) ||
-                (unbounded && item.relative > function.accuracy.relative);
+    const bool excused = (tracked::undecided && item.of_budget > 1.0) || unbounded;
+    item.open = excused && item.relative > function.accuracy.relative;
+    if (excused)
+        item.of_budget = 0.0; // no budget applies
     return item;
 }
 

@@ -107,7 +107,7 @@ Argument roughness(double least, double most) {
 /// 4 / alpha, magnifies: far narrower lobes are among the hard values only.
 constexpr double usual_alpha = 0.02;
 Accuracy narrow_lobe() {
-    return {2e-6 / usual_alpha, 1e-4, "a rounding of the half vector times the lobe's slope"};
+    return {1e-5 / usual_alpha, 1e-4, "a rounding of the half vector times the lobe's slope"};
 }
 
 std::vector<CheckedFunction> microfacet_functions() {
