@@ -11,10 +11,6 @@
 #define ENVIRONMENT_DATA __global const shared_float*
 #else
 #define ENVIRONMENT_DATA const shared_float*
-namespace reradiant::kernels {
-using std::atan2;
-using std::floor;
-} // namespace reradiant::kernels
 #endif
 
 KERNELS_BEGIN

@@ -9,13 +9,6 @@
 #define MICROFACET_BECKMANN 1
 #define MICROFACET_GGX 2
 
-#ifndef __OPENCL_VERSION__
-namespace reradiant::kernels {
-using std::erf;
-using std::erfc;
-} // namespace reradiant::kernels
-#endif
-
 KERNELS_BEGIN
 
 /// Density D(h) of facet normals, 1/sr, with integral D(h) h.z dh = 1; 0 for h.z <= 0. `h` has

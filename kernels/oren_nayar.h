@@ -4,12 +4,6 @@
 
 #include "kernels/portable.h"
 
-#ifndef __OPENCL_VERSION__
-namespace reradiant::kernels {
-using std::atan2;
-} // namespace reradiant::kernels
-#endif
-
 KERNELS_BEGIN
 
 /// A and B of Oren and Nayar 1994 eq. 30, sigma >= 0 in radians. A = 1 and B = 0 for sigma 0.

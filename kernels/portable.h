@@ -6,8 +6,15 @@
 
 #ifdef __OPENCL_VERSION__
 
+// `check --double` asks what single precision costs in digits and saves in time.
+#ifdef KERNELS_IN_DOUBLE
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+typedef double real;
+#define REAL(x) x
+#else
 typedef float real;
 #define REAL(x) x##f
+#endif
 #define DEVICE_FUNCTION
 #define GLOBAL_CONST __global const
 #define KERNELS_BEGIN
@@ -21,16 +28,24 @@ typedef float real;
 #define REAL(x) real(x)
 #define DEVICE_FUNCTION inline
 #define GLOBAL_CONST const
-#define KERNELS_BEGIN namespace reradiant::kernels {
+#define KERNELS_BEGIN namespace reradiant::KERNELS_NAMESPACE {
 #define KERNELS_END }
 
+// Who defines KERNELS_NAMESPACE first gives that namespace a `real` of its own and its functions
+// (host/check/tracked.h).
+#ifndef KERNELS_NAMESPACE
+#define KERNELS_NAMESPACE kernels
 namespace reradiant::kernels {
 using real = double;
 using uint = std::uint32_t;
+using std::atan2;
 using std::cos;
+using std::erf;
+using std::erfc;
 using std::exp;
 using std::expm1;
 using std::fabs;
+using std::floor;
 using std::fmax;
 using std::fmin;
 using std::log;
@@ -38,6 +53,7 @@ using std::log1p;
 using std::sin;
 using std::sqrt;
 } // namespace reradiant::kernels
+#endif
 
 #endif
 

@@ -12,9 +12,6 @@
 #define TEXTURE_DATA __global const shared_float*
 #else
 #define TEXTURE_DATA const shared_float*
-namespace reradiant::kernels {
-using std::floor;
-}
 #endif
 
 KERNELS_BEGIN

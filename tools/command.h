@@ -50,5 +50,6 @@ void add_synth_command(CLI::App& program, CommandContext& context);
 void add_colour_command(CLI::App& program, CommandContext& context);
 void add_fit_command(CLI::App& program, CommandContext& context);
 void add_classify_command(CLI::App& program, CommandContext& context);
+void add_check_command(CLI::App& program, CommandContext& context);
 
 } // namespace reradiant

@@ -32,6 +32,7 @@ void add_commands(CLI::App& program, CommandContext& context) {
     add_validate_command(program, context);
     add_info_command(program, context);
     add_classify_command(program, context);
+    add_check_command(program, context);
     add_convert_command(program, context);
     add_devices_command(program, context);
 }

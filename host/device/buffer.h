@@ -2,6 +2,7 @@
 
 #include "host/device/device.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 
@@ -14,10 +15,11 @@ class DeviceArray {
 public:
     DeviceArray() = default;
     /// At least one element is allocated, so that the buffer can always be bound.
-    DeviceArray(const Device& device, std::size_t count)
-        : device_(&device), count_(count),
-          buffer_(device.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR,
-                  std::max<std::size_t>(count, 1) * sizeof(T)) {}
+    DeviceArray(const Device& device, std::size_t count) : device_(&device), count_(count) {
+        const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(T);
+        check_allocation(device, bytes);
+        buffer_ = cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
+    }
     DeviceArray(const Device& device, std::span<const T> values)
         : DeviceArray(device, values.size()) {
         if (!values.empty())

@@ -1,7 +1,7 @@
 #include "host/device/device.h"
 
+#include "host/device/driver_cache.h"
 #include "host/error.h"
-#include "host/paths.h"
 
 #include <fmt/format.h>
 
@@ -117,11 +117,7 @@ void describe_machine_without_sys() {
 
 void prepare_opencl(int threads) {
     describe_machine_without_sys();
-    std::error_code ignored;
-    const std::filesystem::path folder = cache_directory() / "pocl";
-    std::filesystem::create_directories(folder, ignored);
-    if (std::filesystem::is_directory(folder, ignored))
-        ::setenv("POCL_CACHE_DIR", folder.c_str(), 0);
+    prepare_driver_cache();
     if (threads > 0)
         ::setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
 }
@@ -141,6 +137,16 @@ Device::Device(const std::string& name_or_index) {
         context_ = cl::Context(device_);
         queue_ = cl::CommandQueue(context_, device_);
     });
+}
+
+void check_allocation(const Device& device, std::size_t bytes) {
+    const DeviceInfo& info = device.info();
+    if (bytes > info.max_allocation_bytes)
+        throw_runtime_error(
+            fmt::format("an array of {} bytes is needed, the OpenCL device '{}' allocates at most "
+                        "{} at once",
+                        bytes, info.name, info.max_allocation_bytes),
+            "make the film smaller, take fewer bands or another --device");
 }
 
 void opencl_checked(const std::string& what, const std::function<void()>& action) {

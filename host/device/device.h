@@ -44,6 +44,9 @@ private:
     cl::CommandQueue queue_;
 };
 
+/// Run-time Error when the device cannot allocate so much in one piece.
+void check_allocation(const Device& device, std::size_t bytes);
+
 /// Runs `action`; an OpenCL error becomes a run-time Error that names `what` and the code.
 void opencl_checked(const std::string& what, const std::function<void()>& action);
 /// "CL_INVALID_WORK_GROUP_SIZE" and so on; "error -123" for unknown codes.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iterator>
@@ -68,15 +69,18 @@ bool load_binary(const Device& device, const std::string& binary, cl::Program& p
                         where);
 }
 
-void keep(const cl::Program& program, const fs::path& file) {
+/// Writes the program's binary to the cache and returns its size.
+std::size_t keep(const cl::Program& program, const fs::path& file) {
     try {
         const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
         if (binaries.empty() || binaries[0].empty())
-            return;
+            return 0;
         fs::create_directories(file.parent_path());
         write_text_atomically(file, pack(std::string(binaries[0].begin(), binaries[0].end())));
+        return binaries[0].size();
     } catch (const std::exception& error) {
         spdlog::debug("kernel not cached: {}", error.what()); // a cache is a convenience
+        return 0;
     }
 }
 
@@ -90,30 +94,52 @@ cl::Program compile(const Device& device, const std::string& file, const std::st
     return program;
 }
 
-} // namespace
-
-cl::Program build_program(const Device& device, const std::string& file,
-                          const KernelDefines& defines, BuildStatistics* statistics) {
+/// `source` is complete; `file` is what it is called.
+cl::Program build_source(const Device& device, const std::string& file, const std::string& source,
+                         BuildStatistics* statistics) {
     const auto start = std::chrono::steady_clock::now();
-    const std::string source = kernel_source(data_directory(), file, defines);
     const DeviceInfo& info = device.info();
     const std::string key =
         text_digest(fmt::format("{}\n{}\n{}\n{}\n{}\n{}", source, build_options, info.name,
                                 info.platform, info.driver, info.version));
     const std::string binary = read_cached(cache_file(key));
+    std::size_t binary_bytes = binary.size();
     cl::Program program;
     const bool cached = !binary.empty() && load_binary(device, binary, program);
     if (!cached) {
         program = compile(device, file, source);
-        keep(program, cache_file(key));
+        binary_bytes = keep(program, cache_file(key));
     }
     if (statistics) {
         ++(cached ? statistics->from_cache : statistics->built);
         statistics->source_bytes += source.size();
+        statistics->binary_bytes += binary_bytes;
         statistics->seconds +=
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     return program;
+}
+
+} // namespace
+
+cl::Program build_program(const Device& device, const std::string& file,
+                          const KernelDefines& defines, BuildStatistics* statistics) {
+    return build_source(device, file, kernel_source(data_directory(), file, defines), statistics);
+}
+
+cl::Program build_program_from_text(const Device& device, const std::string& name,
+                                    const std::string& text, const KernelDefines& defines,
+                                    BuildStatistics* statistics) {
+    return build_source(device, name, kernel_source_of_text(data_directory(), name, text, defines),
+                        statistics);
+}
+
+Kernel::Kernel(const cl::Program& program, const char* name, std::size_t local_size)
+    : kernel_(program, name) {
+    const cl::Device device = program.getInfo<CL_PROGRAM_DEVICES>().front();
+    local_size_ = std::min({local_size, device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>(),
+                            device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>().front(),
+                            kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device)});
 }
 
 void Kernel::launch(const Device& device, std::size_t items) const {

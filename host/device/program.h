@@ -13,7 +13,8 @@ namespace reradiant {
 struct BuildStatistics {
     int built = 0, from_cache = 0;
     double seconds = 0.0;
-    std::size_t source_bytes = 0;
+    std::size_t source_bytes = 0; ///< before the compiler leaves anything out
+    std::size_t binary_bytes = 0; ///< of the programs as the driver keeps them
 };
 
 /// Builds a kernel file ("kernels/gather.cl") for a device, or takes it from the disk cache, whose
@@ -23,12 +24,17 @@ struct BuildStatistics {
 cl::Program build_program(const Device& device, const std::string& file,
                           const KernelDefines& defines, BuildStatistics* statistics = nullptr);
 
+/// The same for a source that is no file.
+cl::Program build_program_from_text(const Device& device, const std::string& name,
+                                    const std::string& text, const KernelDefines& defines,
+                                    BuildStatistics* statistics = nullptr);
+
 /// A kernel with its launch size. Arguments are bound in order by one call.
 class Kernel {
 public:
     Kernel() = default;
-    Kernel(const cl::Program& program, const char* name, std::size_t local_size)
-        : kernel_(program, name), local_size_(local_size) {}
+    /// Groups of `local_size` work-items, or of as many as the device can do for this kernel.
+    Kernel(const cl::Program& program, const char* name, std::size_t local_size);
 
     template <typename... Arguments>
     void bind(const Arguments&... arguments) {
@@ -38,6 +44,8 @@ public:
 
     /// Runs at least `items` work-items (rounded up to whole groups; kernels check the range).
     void launch(const Device& device, std::size_t items) const;
+    std::size_t local_size() const { return local_size_; }
+    const cl::Kernel& handle() const { return kernel_; }
 
 private:
     cl::Kernel kernel_;

@@ -16,6 +16,10 @@ using KernelDefines = std::vector<std::pair<std::string, long>>;
 std::string kernel_source(const std::filesystem::path& root, const std::string& file,
                           const KernelDefines& defines);
 
+/// The same for a text that is no file; the compiler's messages call it `name`.
+std::string kernel_source_of_text(const std::filesystem::path& root, const std::string& name,
+                                  const std::string& text, const KernelDefines& defines);
+
 /// 64 bit FNV-1a of a text, 16 hex digits.
 std::string text_digest(const std::string& text);
 

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "host/device/device.h"
+#include "host/device/program.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+struct CheckOptions {
+    std::size_t samples = 1000000; ///< random inputs a function, besides the hard ones
+    std::string only;              ///< functions with this in their name; empty: all
+    bool in_double = false;        ///< also build every function in double and compare
+};
+
+/// Results of the first inputs of a function and by how much each may move, for a regression file.
+struct CheckSample {
+    std::vector<float> results;
+    std::vector<float> budgets; ///< of each; infinite where a comparison decides
+};
+
+/// What a function did on the device. Errors are largest over its outputs; relative ones as the
+/// function's Accuracy says.
+struct FunctionReport {
+    std::string name, header, reason;
+    std::size_t inputs = 0;
+    double max_ulp = 0.0, most_ulp = 0.0; ///< largest, and that which 99.9 % do not exceed
+    double max_relative = 0.0, most_relative = 0.0;
+    double allowed_relative = 0.0; ///< of the latter
+    double of_budget = 0.0;        ///< largest error over what OpenCL allows there
+    double open_share = 0.0;       ///< over it, but a comparison may decide (CheckedFunction)
+    std::size_t over_budget = 0, not_finite = 0;
+    double nanoseconds = 0.0; ///< an evaluation, with its reading and writing
+    /// The same function in double; 0 where it was not asked for.
+    double double_nanoseconds = 0.0, double_max_relative = 0.0;
+    std::vector<std::string> failures; ///< why it does not pass; empty: it does
+    CheckSample sample;
+    bool passed() const { return failures.empty(); }
+};
+
+struct CheckReport {
+    std::vector<FunctionReport> functions;
+    BuildStatistics build;
+    double seconds = 0.0;
+    bool passed() const;
+};
+
+/// Runs the device functions on hard and random inputs, against the same source in double precision
+/// with a running bound of what the OpenCL specification allows a device (tracked.h). `progress`
+/// is called after each. Input Error when no function fits `only`, or when double is asked of a
+/// device that has none.
+CheckReport check_device(const Device& device, const CheckOptions& options,
+                         const std::function<void(const FunctionReport&)>& progress = {});
+
+/// Results of this run, to be compared with later.
+void save_results(const std::filesystem::path& file, const Device& device,
+                  const CheckReport& report);
+
+/// Adds a failure to every function whose results moved by more than both runs' budgets since the
+/// file was saved, or that the file does not hold. Input Error when it is no such file.
+void compare_results(const std::filesystem::path& file, CheckReport& report);
+
+} // namespace reradiant

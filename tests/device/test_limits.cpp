@@ -1,0 +1,80 @@
+// What a device refuses, and that the cause is named before or after it does.
+#include "host/device/buffer.h"
+#include "host/device/program.h"
+#include "host/error.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+namespace reradiant {
+namespace {
+
+const Device& device() {
+    static const Device opened = [] {
+        prepare_opencl(0);
+        return Device("");
+    }();
+    return opened;
+}
+
+template <typename Action>
+std::string error_of(Action action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exit_code(), 1);
+        return error.what();
+    }
+    return "no error";
+}
+
+const cl::Program& generate_program() {
+    static const cl::Program program =
+        build_program(device(), "kernels/generate.cl", {{"FEATURE_LENS", 0}});
+    return program;
+}
+
+TEST(DeviceLimits, Case37GroupsAreNeverLargerThanTheDeviceAllows) {
+    const Kernel kernel(generate_program(), "generate", std::size_t{1} << 20U);
+    EXPECT_LE(kernel.local_size(), device().info().max_work_group);
+    const Kernel small(generate_program(), "generate", 8);
+    EXPECT_EQ(small.local_size(), 8U) << "what was asked for, where it can be had";
+}
+
+TEST(DeviceLimits, Case39BuffersAreTheDriversOwnAndAligned) {
+    for (const std::size_t count : {1U, 3U, 1000U, 100001U}) {
+        const DeviceArray<float> array(device(), count);
+        const auto mapped = array.map(CL_MAP_READ, 0, count);
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(mapped.span().data()) % 128, 0U);
+        EXPECT_EQ(array.buffer().getInfo<CL_MEM_FLAGS>() &
+                      static_cast<cl_mem_flags>(CL_MEM_USE_HOST_PTR),
+                  0U);
+    }
+}
+
+TEST(DeviceLimits, Case42AllocationBeyondTheLimitNamesIt) {
+    const std::size_t most = device().info().max_allocation_bytes;
+    const std::string text =
+        error_of([&] { DeviceArray<float>(device(), most / sizeof(float) + 1); });
+    EXPECT_NE(text.find(std::to_string(most)), std::string::npos) << text;
+    EXPECT_NE(text.find("make the film smaller"), std::string::npos) << text;
+}
+
+TEST(DeviceLimits, Case42RefusedLaunchesNameTheCause) {
+    const cl::Kernel kernel(generate_program(), "generate");
+    for (const auto& [global, local] :
+         {std::pair<std::size_t, std::size_t>{100, 64}, {1U << 20U, 1U << 20U}}) {
+        const std::string text = error_of([&, g = global, l = local] {
+            opencl_checked("a launch", [&] {
+                device().queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(g),
+                                                      cl::NDRange(l));
+            });
+        });
+        EXPECT_NE(text.find("a launch failed"), std::string::npos) << text;
+        EXPECT_NE(text.find("CL_INVALID_"), std::string::npos) << text;
+    }
+}
+
+} // namespace
+} // namespace reradiant
