@@ -14,7 +14,7 @@
 #define CHECK_STACK                                                                                \
     { tables->material, tables->layers, tables->lobes, tables->choice }
 #define CHECK_SURFACE                                                                              \
-    { (int)in[0] + MICROFACET_BECKMANN, in[1], in[2], 1, 0 }
+    { (int)in[0] + MICROFACET_BECKMANN, in[1], in[2], 1, 0, 0 }
 
 /// Columns of a row of choices (layer_stack.h).
 #define CHECK_CHOICES (4 + LOBES)

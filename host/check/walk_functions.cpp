@@ -69,7 +69,7 @@ std::vector<CheckedFunction> facet_functions() {
                    direction(), direction(), integer(1 << 24)}),                                   \
         7, accuracy,                                                                               \
         const WalkSurface surface = {(int)in[0] + (least_distribution),                            \
-                                     in[1] * (real)(alpha_factor), in[2], multiple, 0};            \
+                                     in[1] * (real)(alpha_factor), in[2], multiple, 0, 0};         \
         const WalkTargets targets = {CHECK_VECTOR(6), CHECK_VECTOR(9), 1, 1};                      \
         WalkRandom random = walk_random((uint)in[12], 3u, 5u, 7u);                                 \
         const WalkDeparture d = walk_interface(surface, CHECK_VECTOR(3), targets, &random);        \
