@@ -1,5 +1,6 @@
 #include "host/render/film_sums.h"
 
+#include "host/render/film_variance.h"
 #include "host/spectral/colour.h"
 #include "kernels/features.h"
 
@@ -89,13 +90,20 @@ double mean_radiance(const FilmSums& film, const FilmLayout& layout, std::size_t
     return std::accumulate(parts.begin(), parts.end(), 0.0) / (static_cast<double>(pixels) * bands);
 }
 
+/// Half the difference of the even and the odd samples' means in one band: its square has the
+/// variance of the mean as expectation.
+double half_difference(const PixelSums& sums, std::size_t band, double n, std::uint32_t samples) {
+    // With an odd count the even half has one sample more.
+    const double one_more = samples % 2 == 1 ? sums.sum[band] / n : 0.0;
+    return (sums.alternating[band] - one_more) / n;
+}
+
 /// d^2 / (value^2 + floor) of one pixel, added over its bands.
 double squared_error(const PixelSums& sums, double n, std::uint32_t samples, double floor) {
     double total = 0.0;
     for (std::size_t b = 0; b < sums.sum.size() && n > 0.0; ++b) {
         const double value = sums.sum[b] / n;
-        // With an odd count the even half has one sample more.
-        const double d = (sums.alternating[b] - (samples % 2 == 1 ? value : 0.0)) / n;
+        const double d = half_difference(sums, b, n, samples);
         if (value * value + floor > 0.0)
             total += d * d / (value * value + floor);
     }
@@ -185,6 +193,31 @@ std::uint64_t FilmSums::refused() const {
     return static_cast<std::uint64_t>(total);
 }
 
+namespace {
+
+/// Squared differences of a film's halves, per pixel, and per pixel and band where they are wanted.
+struct Halves {
+    Halves(std::size_t pixels, const WavelengthGrid& bands, bool wants_bands)
+        : y(pixels), by_band(wants_bands ? pixels * static_cast<std::size_t>(bands.count) : 0),
+          weights(xyz_weights(bands)) {}
+
+    void read(std::size_t pixel, const PixelSums& sums, double n, std::uint32_t samples) {
+        double luminance = 0.0;
+        for (std::size_t b = 0; b < weights.size() && n > 0.0; ++b) {
+            const double d = half_difference(sums, b, n, samples);
+            luminance += weights[b][1] * d;
+            if (!by_band.empty())
+                by_band[pixel * weights.size() + b] = static_cast<float>(d * d);
+        }
+        y[pixel] = static_cast<float>(luminance * luminance);
+    }
+
+    std::vector<float> y, by_band;
+    std::vector<Xyz> weights;
+};
+
+} // namespace
+
 SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int width, int height,
                            const WavelengthGrid& bands, std::uint32_t samples) {
     SpectralImage image;
@@ -197,6 +230,7 @@ SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int w
     image.variance_bands.resize(layout.band_variance ? pixels * count : 0);
     image.sample_count.resize(pixels);
     image.variance_y.resize(pixels);
+    Halves halves(pixels, bands, layout.band_variance);
     for_each_pixel(
         film, layout, pixels, bands.count,
         [&](std::size_t pixel, const PixelSums& sums, std::size_t) {
@@ -209,7 +243,11 @@ SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int w
                     static_cast<float>(variance_of_mean(sums.sum[b], sums.squares[b], n));
             image.sample_count[pixel] = static_cast<float>(n);
             image.variance_y[pixel] = static_cast<float>(luminance_variance(film, pixel, n));
+            halves.read(pixel, sums, n, samples);
         });
+    scale_variances(image.variance_y, halves.y, width, height, 1);
+    scale_variances(image.variance_bands, halves.by_band, width, height,
+                    layout.band_variance ? count : 0);
     return image;
 }
 

@@ -36,7 +36,8 @@ struct FilmSums {
     std::uint64_t refused() const;
 };
 
-/// Mean image with sample count and variance; `samples` were taken of every pixel.
+/// Mean image with sample count and variance of the mean (film_variance.h); `samples` were taken of
+/// every pixel.
 SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int width, int height,
                            const WavelengthGrid& bands, std::uint32_t samples);
 

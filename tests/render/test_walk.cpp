@@ -108,6 +108,47 @@ std::vector<float> rendered(std::size_t batch_paths, unsigned seed) {
         .image.values;
 }
 
+/// Strips of two materials, and of one whose surface mixes them or picks one of them as the levels
+/// of a checker of many squares a pixel: the mean of the two.
+TEST(Walk, MixturesAndTexturesAreTheMeanOfWhatTheyMix) {
+    const std::vector<Material> materials = {gold_under({layer(1.5, 0.2)}, 0.3),
+                                             over_fluorescent({layer(1.5)}), over_grey({}),
+                                             over_grey({})};
+    Scene scene = strips_scene(materials);
+    scene.lights = {environment(Spectrum::constant(1.0))};
+    scene.integrator.max_depth = 1;
+    scene.surfaces = plain_surfaces(scene);
+    scene.surfaces[2].first_material = 0;
+    scene.surfaces[2].mixed_with = 1;
+    scene.surfaces[2].mix_weight = 0.5;
+    Texture checker;
+    checker.type = TextureType::Checker;
+    checker.space = TextureSpace::Uv;
+    checker.size = 1e-6;
+    checker.levels = 2;
+    scene.textures = {checker};
+    scene.surfaces[3].first_material = 0;
+    scene.surfaces[3].textures = {0};
+    RenderOptions options;
+    options.bands = bands;
+    options.samples = 256;
+    options.model = Model::Walk;
+    const RenderResult result = render(scene, device(), options);
+    for (const int band : {2, 9, 13}) {
+        const BandStatistics a = strip_statistics(result.image, 0, band);
+        const BandStatistics b = strip_statistics(result.image, 1, band);
+        EXPECT_GT(std::fabs(a.mean - b.mean), 0.02) << "the two tell apart, band " << band;
+        for (const int strip : {2, 3}) {
+            const BandStatistics mixed = strip_statistics(result.image, strip, band);
+            EXPECT_NEAR(mixed.mean, 0.5 * (a.mean + b.mean),
+                        sidak_sigmas(comparisons) * std::hypot(mixed.standard_error,
+                                                               0.5 * a.standard_error,
+                                                               0.5 * b.standard_error))
+                << "strip " << strip << ", band " << band;
+        }
+    }
+}
+
 TEST(Walk, SameSeedGivesTheSameImageWhateverTheBatch) {
     // batches of every size begin with too little room for events
     const std::vector<float> reference = rendered(1u << 15, 0);

@@ -132,6 +132,12 @@ TEST_F(Textures, AnImageAsAReflectanceKeepsItsColours) {
     EXPECT_EQ(grey.materials.size(), 1u + 8u);
 }
 
+TEST_F(Textures, AnEnvironmentImageStandsAlone) {
+    write_image("sky.png");
+    const std::string sky = "[[light]]\ntype = \"environment\"\nfile = \"sky.png\"\n";
+    expect_error(lambert("0.5"), sky, 18, 1, "an environment image stands beside another");
+}
+
 TEST_F(Textures, ReferencesThatMeanNothingAreRefused) {
     expect_error(lambert("{ texture = \"cloud\" }"), NOISE, 12, 49,
                  "no texture is called \"cloud\"; there are: clouds");

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sys/resource.h>
 
 using namespace reradiant;
 
@@ -95,6 +96,12 @@ Scene scene_of(const Study& study) {
     return scene;
 }
 
+double peak_kilobytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss);
+}
+
 void run(benchmark::State& state, const Study& study) {
     const Scene scene = scene_of(study);
     RenderOptions options;
@@ -113,6 +120,7 @@ void run(benchmark::State& state, const Study& study) {
     state.counters["rays/path"] =
         static_cast<double>(result.rays) / static_cast<double>(result.paths);
     state.counters["device_MB"] = 1e-6 * static_cast<double>(result.device_bytes);
+    state.counters["peak_MB"] = 1e-3 * peak_kilobytes(); // of the process so far
 }
 
 int argument(const benchmark::State& state) {
