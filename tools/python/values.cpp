@@ -68,12 +68,12 @@ py::object python_value(const nlohmann::ordered_json& value) {
         py::list list;
         for (const auto& element : value)
             list.append(python_value(element));
-        return std::move(list);
+        return list;
     }
     py::dict dict;
     for (const auto& [key, element] : value.items())
         dict[py::str(key)] = python_value(element);
-    return std::move(dict);
+    return dict;
 }
 
 std::vector<double> to_vector(const Doubles& values) {
