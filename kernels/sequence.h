@@ -22,14 +22,15 @@ DEVICE_FUNCTION uint sequence_reversed(uint x) {
 }
 
 /// Owen's scrambling of a number whose bits are reversed: every bit is flipped by a hash of those
-/// below it (Laine and Karras 2011 with the constants of Burley 2020, listing 1).
-DEVICE_FUNCTION uint sequence_scrambled_reversed(uint x, uint seed) {
-    x += seed;
+/// below it (Laine and Karras 2011 with the constants of Burley 2020, listing 1). The result has
+/// its bits in order.
+DEVICE_FUNCTION uint sequence_scrambled(uint reversed, uint seed) {
+    uint x = reversed + seed;
     x ^= x * 0x6c50b47cu;
     x ^= x * 0xb82f1e52u;
     x ^= x * 0xc7afe638u;
     x ^= x * 0x8d22f6e6u;
-    return x;
+    return sequence_reversed(x);
 }
 
 /// Second coordinate of Sobol's sequence, bits reversed: bit k is the parity of the bits j of the
@@ -42,24 +43,19 @@ DEVICE_FUNCTION uint sequence_second_reversed(uint index) {
     return index ^ ((index >> 16) & 0x0000ffffu);
 }
 
-/// One point of a scrambled (0, 2)-sequence; its prefixes of 2^k points are shuffled among
-/// themselves by `shuffle`.
-DEVICE_FUNCTION void sequence_2(uint index, uint shuffle, uint scramble_x, uint scramble_y, real* x,
-                                real* y) {
-    const uint shuffled =
-        sequence_reversed(sequence_scrambled_reversed(sequence_reversed(index), shuffle));
-    *x = random_unit(sequence_reversed(sequence_scrambled_reversed(shuffled, scramble_x)));
-    *y = random_unit(sequence_reversed(
-        sequence_scrambled_reversed(sequence_second_reversed(shuffled), scramble_y)));
-}
-
-/// Four numbers in [0, 1) for one dimension block: (b, c) and (a, d) are the pairs.
+/// Four numbers in [0, 1) for one dimension block: (b, c) and (a, d) are points of (0, 2)-sequences
+/// whose prefixes of 2^k points are shuffled among themselves.
 DEVICE_FUNCTION Random4 sequence_4(uint pixel, uint sample, uint dimension, uint seed) {
     const RandomWords keys = random_words(pixel, 2u * dimension + (sample & 1u), 0x5e90e2ceu, seed);
-    const uint index = sample >> 1;
+    const uint index = sequence_reversed(sample >> 1);
+    const uint first = sequence_scrambled(index, keys.x);
+    const uint second = sequence_scrambled(index, keys.w);
     Random4 r;
-    sequence_2(index, keys.x, keys.y, keys.z, &r.b, &r.c);
-    sequence_2(index, keys.w, keys.x * 0x9e3779b9u + 1u, keys.y * 0x85ebca6bu + 1u, &r.a, &r.d);
+    r.b = random_unit(sequence_scrambled(first, keys.y));
+    r.c = random_unit(sequence_scrambled(sequence_second_reversed(first), keys.z));
+    r.a = random_unit(sequence_scrambled(second, keys.x * 0x9e3779b9u + 1u));
+    r.d = random_unit(
+        sequence_scrambled(sequence_second_reversed(second), keys.y * 0x85ebca6bu + 1u));
     return r;
 }
 
