@@ -42,8 +42,12 @@ void watch_for_crashes(const fs::path& folder) {
         return;
     std::strcpy(marker_file, marker.c_str());
     std::strcpy(crash_message, message.c_str());
-    for (const int signal : crash_signals)
-        std::signal(signal, on_crash);
+    for (const int signal : crash_signals) {
+        struct sigaction present {};
+        // a sanitizer's or a debugger's own handler says more
+        if (::sigaction(signal, nullptr, &present) == 0 && present.sa_handler == SIG_DFL)
+            std::signal(signal, on_crash);
+    }
 }
 
 bool is_usable(const fs::path& folder) {
