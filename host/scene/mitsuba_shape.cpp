@@ -75,11 +75,11 @@ std::vector<toml::table> cube(const Matrix& matrix) {
     std::vector<toml::table> faces;
     for (int axis = 0; axis < 3; ++axis)
         for (const double side : {-1.0, 1.0})
-            faces.push_back(
-                {{"type", "rectangle"},
-                 {"center", toml_vector(column(matrix, 3) + side * column(matrix, axis))},
-                 {"edge_u", toml_vector(2.0 * side * column(matrix, (axis + 1) % 3))},
-                 {"edge_v", toml_vector(2.0 * column(matrix, (axis + 2) % 3))}});
+            faces.push_back(toml::table{
+                {"type", "rectangle"},
+                {"center", toml_vector(column(matrix, 3) + side * column(matrix, axis))},
+                {"edge_u", toml_vector(2.0 * side * column(matrix, (axis + 1) % 3))},
+                {"edge_v", toml_vector(2.0 * column(matrix, (axis + 2) % 3))}});
     return faces;
 }
 
