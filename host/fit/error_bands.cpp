@@ -86,6 +86,7 @@ Covariance covariance_of(const Matrix& jacobian, const std::vector<bool>& held, 
     const auto count = static_cast<Eigen::Index>(free.size());
     Covariance result;
     result.free = static_cast<int>(count);
+    result.variance = variance;
     if (count == 0 || jacobian.rows() == 0) {
         result.root = Matrix::Zero(jacobian.cols(), 0);
         return result;
@@ -131,6 +132,16 @@ Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitT
     return covariance_of(
         jacobian, firmly_at_zero(model, fit.parameters, jacobian.transpose() * seen, jacobian),
         noise_is_estimated ? reduced : std::max(1.0, reduced));
+}
+
+Covariance with_shared_errors(const Covariance& independent, const Matrix& entry_jacobian,
+                              const FitTarget& target, const SharedErrors& errors) {
+    const Vector squared = target.weight.cwiseAbs2().reshaped();
+    const Matrix pull = squared.asDiagonal() * (entry_jacobian * independent.root);
+    const Matrix gain = independent.root * pull.transpose() / independent.variance;
+    Covariance result = independent;
+    result.root = std::sqrt(independent.variance) / target.scale * errors.root(gain);
+    return result;
 }
 
 NormalisedCurves normalised_curves(const TermModel& model, const Vector& parameters,

@@ -3,6 +3,7 @@
 #include "host/fit/budget_solver.h"
 #include "host/fit/fit.h"
 #include "host/fit/quantum_yield.h"
+#include "host/fit/shared_errors.h"
 
 #include <Eigen/Core>
 
@@ -12,9 +13,10 @@ namespace reradiant {
 
 /// Gauss-Newton covariance of parameters, root * root^T.
 struct Covariance {
-    Eigen::MatrixXd root; ///< (parameters, rank); rows of held parameters are zero
-    int rank = 0;         ///< directions that the data determine
-    int free = 0;         ///< parameters that were not held
+    Eigen::MatrixXd root;  ///< (parameters, rank); rows of held parameters are zero
+    int rank = 0;          ///< directions that the data determine
+    int free = 0;          ///< parameters that were not held
+    double variance = 1.0; ///< of a residual, which `root` holds
 
     /// Standard errors of quantities with this Jacobian (quantities, parameters).
     Eigen::VectorXd sigma(const Eigen::MatrixXd& jacobian) const;
@@ -31,6 +33,11 @@ Covariance covariance_of(const Eigen::MatrixXd& jacobian, const std::vector<bool
 /// bands are not empty. Active photon balances count as exact.
 Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitTarget& target,
                          const PhotonPenalty& penalty, RobustLoss loss, bool noise_is_estimated);
+
+/// The same least-squares estimate where the entries' errors are not independent, as its weights
+/// suppose, but shared (White 1980): gain * errors with gain = (J^T W J)^+ J^T W.
+Covariance with_shared_errors(const Covariance& independent, const Eigen::MatrixXd& entry_jacobian,
+                              const FitTarget& target, const SharedErrors& errors);
 
 /// Normalised curves of a model and their errors (FitResult); unit 1/nm and 1.
 struct NormalisedCurves {

@@ -1,6 +1,12 @@
 #include "host/fit/factor_fit.h"
 
+#include "host/error.h"
+#include "host/fit/knot_choice.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace reradiant {
@@ -14,6 +20,13 @@ constexpr double spacings_in_steps[] = {1.5, 2.0, 3.0};
 /// Steps that each start is given at first: nearly all end in half as many, and one that does not
 /// is rarely the best.
 constexpr int first_steps = 80;
+/// Of both curves of a term.
+constexpr std::size_t fewest_knots = 4;
+
+/// Functions of both curves.
+struct CurveBases {
+    SmoothBasis emission, excitation;
+};
 
 /// Values of a curve at bands that no used entry depends on, from their neighbours on both sides.
 void bridge_gaps(const Eigen::ArrayXd& used, Eigen::MatrixXd& curves) {
@@ -35,12 +48,37 @@ public:
                  Clock::time_point begin)
         : target_(target), settings_(settings), evidence_(evidence), begin_(begin) {}
 
-    FittedCandidate fit(int rank, double spacing_nm, const std::vector<FactorCurves>& starts) {
+    FittedCandidate fit(int rank, const CurveBases& bases,
+                        const std::vector<FactorCurves>& starts) {
         SolverSettings solver = settings_.solver;
         solver.most_iterations = std::min(solver.most_iterations, first_steps);
-        FittedCandidate best = best_of(rank, spacing_nm, starts, solver);
+        FittedCandidate best = best_of(rank, bases, starts, solver);
         return best.fit.trace.converged ? std::move(best)
-                                        : best_of(rank, spacing_nm, starts, settings_.solver);
+                                        : best_of(rank, bases, starts, settings_.solver);
+    }
+
+    CurveBases splines(double spacing_nm) const {
+        return {spline_basis(target_.emission, spacing_nm),
+                spline_basis(target_.excitation, spacing_nm)};
+    }
+
+    /// The fit with curves that are linear between as many bands as some bytes hold.
+    FittedCandidate within(std::size_t bytes, FittedCandidate full) {
+        if (!full.model || 4 * full.model->stored_numbers() <= bytes)
+            return full;
+        const int rank = full.model->terms();
+        const std::size_t numbers = bytes / 4, positions = numbers_of_positions(target_);
+        const auto terms = static_cast<std::size_t>(rank);
+        if (numbers < positions + fewest_knots * terms)
+            throw_input_error(
+                {}, fmt::format("--bytes {} is too small for {} terms", bytes, rank),
+                fmt::format("give at least {}", 4 * (positions + fewest_knots * terms)));
+        const FactorCurves curves = full.model->curves(full.fit.parameters);
+        const CurveKnots knots = choose_knots(target_, curves, (numbers - positions) / terms);
+        return fit(rank,
+                   {hat_basis(target_.emission, knots.emission),
+                    hat_basis(target_.excitation, knots.excitation)},
+                   {curves});
     }
 
     std::vector<FactorCurves> starts(int rank, const FactorCurves& smaller) const {
@@ -52,11 +90,11 @@ public:
     }
 
 private:
-    FittedCandidate best_of(int rank, double spacing_nm, const std::vector<FactorCurves>& starts,
-                            const SolverSettings& solver) {
+    FittedCandidate best_of(int rank, const CurveBases& bases,
+                            const std::vector<FactorCurves>& starts, const SolverSettings& solver) {
         FittedCandidate best;
         for (const FactorCurves& start : starts) {
-            FittedCandidate candidate = fit_from(rank, spacing_nm, start, solver);
+            FittedCandidate candidate = fit_from(rank, bases, start, solver);
             const bool better = candidate.fit.trace.converged != best.fit.trace.converged
                                     ? candidate.fit.trace.converged
                                     : candidate.criterion < best.criterion;
@@ -66,10 +104,9 @@ private:
         return best;
     }
 
-    FittedCandidate fit_from(int rank, double spacing_nm, const FactorCurves& start,
+    FittedCandidate fit_from(int rank, const CurveBases& bases, const FactorCurves& start,
                              const SolverSettings& solver) {
-        const SmoothBasis emission = spline_basis(target_.emission, spacing_nm);
-        const SmoothBasis excitation = spline_basis(target_.excitation, spacing_nm);
+        const auto& [emission, excitation] = bases;
         FittedCandidate candidate;
         candidate.penalty = std::make_unique<PhotonPenalty>(target_.value.cols());
         auto model = std::make_unique<FactorModel>(target_, rank, emission, excitation,
@@ -114,27 +151,30 @@ FactorCurves curves_of(const FittedCandidate& candidate) {
 FittedCandidate fit_factors(const FitTarget& target, const FitSettings& settings, Evidence evidence,
                             Clock::time_point begin) {
     FactorFitter fitter(target, settings, evidence, begin);
-    const double spacing_nm = settings.smooth_nm.value_or(0.0);
+    const CurveBases bases = fitter.splines(settings.smooth_nm.value_or(0.0));
+    const std::size_t most_bytes =
+        settings.most_bytes.value_or(std::numeric_limits<std::size_t>::max());
     FactorCurves smaller = fitter.no_curves();
     if (settings.rank) {
         for (int rank = 1; rank < *settings.rank; ++rank)
             smaller = fitter.starts(rank, smaller).front();
-        return fitter.fit(*settings.rank, spacing_nm, fitter.starts(*settings.rank, smaller));
+        return fitter.within(
+            most_bytes, fitter.fit(*settings.rank, bases, fitter.starts(*settings.rank, smaller)));
     }
     FittedCandidate best = dark_candidate(target, evidence);
     for (int rank = 1; rank <= largest_factor_rank; ++rank) {
-        FittedCandidate next = fitter.fit(rank, spacing_nm, fitter.starts(rank, smaller));
+        FittedCandidate next = fitter.fit(rank, bases, fitter.starts(rank, smaller));
         smaller = curves_of(next);
         if (next.criterion >= best.criterion)
             break;
         best = std::move(next);
     }
-    if (!best.model || settings.smooth_nm)
-        return best;
+    if (!best.model || settings.smooth_nm || settings.most_bytes)
+        return fitter.within(most_bytes, std::move(best));
     const FactorCurves start = curves_of(best);
     for (const double steps : spacings_in_steps) {
-        FittedCandidate smooth =
-            fitter.fit(best.model->terms(), steps * target.emission.step_nm, {start});
+        FittedCandidate smooth = fitter.fit(
+            best.model->terms(), fitter.splines(steps * target.emission.step_nm), {start});
         if (smooth.criterion < best.criterion && smooth.fit.trace.converged)
             best = std::move(smooth);
     }

@@ -23,12 +23,17 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Clock = std::chrono::steady_clock;
 
-void check_rank(const FitSettings& settings) {
+void check_model(const FitSettings& settings) {
     const int most =
         settings.model == FitModel::Factors ? largest_factor_rank : largest_gaussian_count;
     if (settings.rank && settings.model == FitModel::Matrix)
         throw_input_error({}, "--rank does not go with the model matrix",
                           "leave it out or choose factors or gaussians");
+    if (settings.most_bytes && settings.model != FitModel::Factors)
+        throw_input_error(
+            {},
+            fmt::format("--bytes does not go with the model {}", fit_model_name(settings.model)),
+            "leave it out or choose factors");
     if (settings.rank && (*settings.rank < 1 || *settings.rank > most))
         throw_input_error(
             {}, fmt::format("--rank {} is out of range", *settings.rank),
@@ -47,10 +52,11 @@ void set_error_bands(const FittedCandidate& candidate, const PreparedTarget& pre
                      const FitSettings& settings, FitResult& result) {
     const TermModel& model = *candidate.model;
     const Vector& parameters = candidate.fit.parameters;
-    const Covariance covariance =
-        covariance_at(model, candidate.fit, prepared.target, *candidate.penalty, settings.loss,
-                      prepared.noise_is_estimated);
     const Matrix jacobian = model.entry_jacobian(parameters);
+    Covariance covariance = covariance_at(model, candidate.fit, prepared.target, *candidate.penalty,
+                                          settings.loss, prepared.noise_is_estimated);
+    if (prepared.errors)
+        covariance = with_shared_errors(covariance, jacobian, prepared.target, *prepared.errors);
     result.sigma = prepared.target.scale *
                    covariance.sigma(jacobian).reshaped(result.sigma.rows(), result.sigma.cols());
     // Where a whole column is missing, the model only bridges its neighbours.
@@ -142,10 +148,13 @@ FitResult empty_result(const BispectralData& data, const PreparedTarget& prepare
     return result;
 }
 
-FitResult fit_bare(const BispectralData& data, const FitSettings& settings,
+FitResult fit_bare(const SubstrateData& substrate, const FitSettings& settings,
                    Clock::time_point begin) {
-    const PreparedTarget prepared = prepare_target(
+    const BispectralData& data = substrate.data;
+    PreparedTarget prepared = prepare_target(
         data, {settings.anti_stokes, settings.spill_nm.value_or(data.emission.step_nm)});
+    prepared.noise_is_estimated = prepared.noise_is_estimated || substrate.noise_is_estimated;
+    prepared.errors = substrate.errors;
     FitResult result = empty_result(data, prepared, settings);
     take_model(data, prepared, settings, begin, result);
     pass_diagonal(prepared, result);
@@ -177,10 +186,10 @@ const char* fit_model_name(FitModel model) {
 
 FitResult fit_reradiation(const BispectralData& data, const FitSettings& settings) {
     const Clock::time_point begin = Clock::now();
-    check_rank(settings);
-    const SubstrateData substrate =
-        invert_stack(data, settings.stack.value_or(LayerStack{}), settings.unknown);
-    FitResult result = fit_bare(substrate.data, settings, begin);
+    check_model(settings);
+    const SubstrateData substrate = invert_stack(data, settings.stack.value_or(LayerStack{}),
+                                                 settings.unknown, settings.anti_stokes);
+    FitResult result = fit_bare(substrate, settings, begin);
     result.notes.insert(result.notes.begin(), substrate.notes.begin(), substrate.notes.end());
     if (settings.unknown.any())
         result.stack = substrate.estimate;

@@ -32,6 +32,9 @@ struct FitSettings {
     /// Spacing of the spline functions of `factors`; 0: one number a band; empty: by evidence when
     /// the rank is, else one number a band.
     std::optional<double> smooth_nm;
+    /// Largest compact form of `factors`: where one number a band takes more, values are kept at
+    /// the bands that matter most and the curves are linear between them. Not with smooth_nm.
+    std::optional<std::size_t> most_bytes;
     /// Entries with |emission - excitation| up to this are not used: the reflected light that
     /// spills over from the diagonal. Empty: one emission step.
     std::optional<double> spill_nm;
@@ -42,7 +45,7 @@ struct FitSettings {
     unsigned seed = 0; ///< of the random starts
 };
 
-/// Photons emitted over photons absorbed (1 - diagonal), with its 95 % band.
+/// Photons emitted over photons absorbed (1 - diagonal), with its 95 % band; NaN: unknown.
 struct QuantumYield {
     double value, low, high;
 };

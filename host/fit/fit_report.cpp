@@ -64,6 +64,10 @@ void add_yields(HtmlPage& page, const FitResult& result) {
     std::vector<std::vector<std::string>> rows;
     for (std::size_t k = 0; k < result.quantum_yield.size(); ++k) {
         const QuantumYield& yield = result.quantum_yield[k];
+        if (!std::isfinite(yield.value)) {
+            rows.push_back({std::to_string(k + 1), "unknown", "", ""});
+            continue;
+        }
         rows.push_back({std::to_string(k + 1), fmt::format("{:.4f}", yield.value),
                         fmt::format("{:.4f}", yield.low), fmt::format("{:.4f}", yield.high)});
     }

@@ -3,7 +3,6 @@
 #include "host/measure/measure.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"
-#include "tests/fit/not_reached.h"
 
 #include <gtest/gtest.h>
 
@@ -85,7 +84,6 @@ TEST(StackInversion, FindsTheThicknessFromSeveralAngles) {
 }
 
 TEST(StackInversion, SaysThatThicknessAndAbsorptionAreOne) {
-    NOT_REACHED_YET("the product is found 11 % off");
     UnknownLayers unknown;
     unknown.thickness = unknown.absorption = true;
     const SubstrateData bare =
@@ -100,7 +98,6 @@ TEST(StackInversion, SaysThatThicknessAndAbsorptionAreOne) {
 }
 
 TEST(StackInversion, FitsThroughTheLayer) {
-    NOT_REACHED_YET("the bands of the fit cover 81 % of the truth");
     FitSettings settings;
     settings.stack = varnish();
     settings.rank = 1;

@@ -18,12 +18,6 @@ FitResult fit(const BispectralData& data, std::optional<int> rank = {}) {
     return fit_reradiation(data, settings);
 }
 
-bool says(const std::vector<std::string>& lines, const std::string& words) {
-    return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
-        return line.find(words) != std::string::npos;
-    });
-}
-
 } // namespace
 
 TEST(Stiff, NearlyIdenticalFluorophoresAreNotTakenForTwo) {
@@ -130,6 +124,20 @@ TEST(Stiff, FewerDataThanNumbersAreRefused) {
         EXPECT_EQ(error.exit_code(), 2);
         EXPECT_NE(std::string(error.what()).find("synthetic.csv"), std::string::npos);
     }
+}
+
+TEST(Stiff, YieldOfASampleThatReflectsAllIsUnknown) {
+    const ReradiationMatrix truth = true_matrix({{440.0, 30.0, 0.01, 600.0, 25.0, 0.7}},
+                                                emission_10_nm(), excitation_10_nm(), 1.0);
+    BispectralData data = noisy_data(truth, 0.01 * stokes_peak(truth), true, 9);
+    for (int i = 8; i < data.excitation.count; ++i) {
+        data.blocks[0].value(i - 8, i) = 1.0 - 1e-4;
+        data.blocks[0].sigma(i - 8, i) = 0.01;
+    }
+    const FitResult result = fit(data, 1);
+    ASSERT_EQ(result.quantum_yield.size(), 1u);
+    EXPECT_TRUE(std::isnan(result.quantum_yield[0].value));
+    EXPECT_TRUE(says(result.warnings, "unknown"));
 }
 
 TEST(Stiff, Case51UncertainAbsorptanceIsWarnedAbout) {
