@@ -30,14 +30,12 @@ Covariance covariance_of(const Eigen::MatrixXd& jacobian, const std::vector<bool
 
 /// Covariance of a model at its optimum. Parameters at zero that the data push against zero by more
 /// than two standard errors are held; those that are there by chance are not, so that their error
-/// bands are not empty. Active photon balances count as exact.
+/// bands are not empty. Active photon balances count as exact, priors as they are: what the data do
+/// not determine is as uncertain as its prior. `free` and `rank` are of the data alone. With
+/// `errors` those of the entries are shared, not independent as the weights suppose (White 1980).
 Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitTarget& target,
-                         const PhotonPenalty& penalty, RobustLoss loss, bool noise_is_estimated);
-
-/// The same least-squares estimate where the entries' errors are not independent, as its weights
-/// suppose, but shared (White 1980): gain * errors with gain = (J^T W J)^+ J^T W.
-Covariance with_shared_errors(const Covariance& independent, const Eigen::MatrixXd& entry_jacobian,
-                              const FitTarget& target, const SharedErrors& errors);
+                         const PhotonPenalty& penalty, RobustLoss loss, bool noise_is_estimated,
+                         const SharedErrors* errors);
 
 /// Normalised curves of a model and their errors (FitResult); unit 1/nm and 1.
 struct NormalisedCurves {

@@ -28,20 +28,6 @@ struct CurveBases {
     SmoothBasis emission, excitation;
 };
 
-/// Values of a curve at bands that no used entry depends on, from their neighbours on both sides.
-void bridge_gaps(const Eigen::ArrayXd& used, Eigen::MatrixXd& curves) {
-    Eigen::Index last = -1;
-    for (Eigen::Index band = 0; band < used.size(); ++band) {
-        if (used(band) <= 0.0)
-            continue;
-        for (Eigen::Index gap = last + 1; last >= 0 && gap < band; ++gap) {
-            const double share = static_cast<double>(gap - last) / static_cast<double>(band - last);
-            curves.row(gap) = (1.0 - share) * curves.row(last) + share * curves.row(band);
-        }
-        last = band;
-    }
-}
-
 class FactorFitter {
 public:
     FactorFitter(const FitTarget& target, const FitSettings& settings, Evidence evidence,
@@ -118,22 +104,15 @@ private:
         candidate.fit =
             minimise_within_budget(*model, target_, *candidate.penalty, parameters, solver, begin_);
         model->balance(candidate.fit.parameters);
-        if (emission.is_per_band() && excitation.is_per_band())
-            bridge(*model, candidate.fit.parameters);
         // One number a term is only a choice of unit; numbers at zero were not needed.
         const Eigen::Index numbers = (candidate.fit.parameters.array() > 0.0).count() - rank;
         candidate.criterion = information_criterion(candidate.fit.chi_squared, numbers,
                                                     target_.used_count(), evidence_);
         candidate.spacing_nm = emission.spacing_nm;
+        candidate.emission_knots = emission.knots;
+        candidate.excitation_knots = excitation.knots;
         candidate.model = std::move(model);
         return candidate;
-    }
-
-    void bridge(const FactorModel& model, Eigen::VectorXd& parameters) const {
-        FactorCurves curves = model.curves(parameters);
-        bridge_gaps(target_.weight.rowwise().sum().array(), curves.emission);
-        bridge_gaps(target_.weight.colwise().sum().transpose().array(), curves.excitation);
-        parameters = model.parameters(curves.emission, curves.excitation);
     }
 
     const FitTarget& target_;

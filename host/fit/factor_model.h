@@ -28,6 +28,7 @@ public:
     FactorCurves curves(const Eigen::VectorXd& parameters) const override;
     Eigen::MatrixXd matrix(const Eigen::VectorXd& parameters) const override;
     Eigen::MatrixXd entry_jacobian(const Eigen::VectorXd& parameters) const override;
+    Eigen::MatrixXd prior_jacobian() const override;
     int terms() const override { return rank_; }
     int term_of(Eigen::Index parameter) const override {
         return static_cast<int>(parameter % rank_);
@@ -44,6 +45,13 @@ public:
     void balance(Eigen::VectorXd& parameters) const;
 
 private:
+    /// Factors of consecutive blocks whose sum is expected near to zero, in standard deviations.
+    struct PriorRow {
+        Eigen::Index first_block;
+        std::vector<double> factors;
+    };
+    std::vector<PriorRow> prior_rows() const;
+
     const FitTarget& target_;
     int rank_;
     SmoothBasis emission_, excitation_;

@@ -53,10 +53,9 @@ void set_error_bands(const FittedCandidate& candidate, const PreparedTarget& pre
     const TermModel& model = *candidate.model;
     const Vector& parameters = candidate.fit.parameters;
     const Matrix jacobian = model.entry_jacobian(parameters);
-    Covariance covariance = covariance_at(model, candidate.fit, prepared.target, *candidate.penalty,
-                                          settings.loss, prepared.noise_is_estimated);
-    if (prepared.errors)
-        covariance = with_shared_errors(covariance, jacobian, prepared.target, *prepared.errors);
+    const Covariance covariance =
+        covariance_at(model, candidate.fit, prepared.target, *candidate.penalty, settings.loss,
+                      prepared.noise_is_estimated, prepared.errors ? &*prepared.errors : nullptr);
     result.sigma = prepared.target.scale *
                    covariance.sigma(jacobian).reshaped(result.sigma.rows(), result.sigma.cols());
     // Where a whole column is missing, the model only bridges its neighbours.
@@ -78,6 +77,13 @@ void set_error_bands(const FittedCandidate& candidate, const PreparedTarget& pre
             result.parameters - result.covariance_rank));
 }
 
+std::vector<double> centres_of(const std::vector<int>& bands, const WavelengthGrid& grid) {
+    std::vector<double> nm;
+    for (const int band : bands)
+        nm.push_back(grid.centre_nm(band));
+    return nm;
+}
+
 void take_terms(const BispectralData& data, const FittedCandidate& candidate,
                 const PreparedTarget& prepared, const FitSettings& settings, FitResult& result) {
     result.trace = candidate.fit.trace;
@@ -92,6 +98,8 @@ void take_terms(const BispectralData& data, const FittedCandidate& candidate,
     refuse_too_few_data(data, used, needed);
     result.rank = candidate.model->terms();
     result.spacing_nm = candidate.spacing_nm;
+    result.emission_knots_nm = centres_of(candidate.emission_knots, data.emission);
+    result.excitation_knots_nm = centres_of(candidate.excitation_knots, data.excitation);
     result.bytes = 4 * candidate.model->stored_numbers();
     result.matrix.values =
         prepared.target.scale * candidate.model->matrix(candidate.fit.parameters);

@@ -59,6 +59,8 @@ struct FitResult {
     FitModel model = FitModel::Factors;
     int rank = 0;            ///< terms; of `matrix` the numerical rank is not looked for: 0
     double spacing_nm = 0.0; ///< of the splines of `factors`; 0: one number a band
+    /// Bands whose values the curves keep, being linear between them; empty: they keep all.
+    std::vector<double> emission_knots_nm, excitation_knots_nm;
     /// Per-band, rows = emission, on the data's grid: model off the diagonal, the data's diagonal.
     ReradiationMatrix matrix;
     Eigen::MatrixXd sigma; ///< standard error of every entry of `matrix`, NaN: unknown
