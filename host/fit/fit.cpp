@@ -106,11 +106,24 @@ void take_terms(const BispectralData& data, const FittedCandidate& candidate,
     set_error_bands(candidate, prepared, settings, result);
 }
 
+/// What entries share does not average out over them; so much more than their own error.
+void add_shared_errors(const PreparedTarget& prepared, Matrix& sigma) {
+    const FitTarget& target = prepared.target;
+    const Matrix all = prepared.errors->entry_variance();
+    for (Eigen::Index k = 0; k < sigma.size(); ++k)
+        if (target.weight(k) > 0.0)
+            sigma(k) =
+                std::sqrt(sigma(k) * sigma(k) +
+                          std::max(0.0, all(k) - std::pow(target.scale / target.weight(k), 2)));
+}
+
 void take_matrix(const MatrixFit& fit, const PreparedTarget& prepared, FitResult& result) {
     result.trace = fit.fit.trace;
     result.bytes = 4 * fit.stored_numbers;
     result.matrix.values = prepared.target.scale * fit.value;
     result.sigma = prepared.target.scale * fit.sigma;
+    if (prepared.errors)
+        add_shared_errors(prepared, result.sigma);
     const double freedom =
         std::max(1.0, static_cast<double>(prepared.target.used_count()) - fit.effective_numbers);
     result.reduced_chi_squared = fit.fit.chi_squared / freedom;

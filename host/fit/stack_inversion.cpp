@@ -168,8 +168,7 @@ SubstrateData invert_stack(const BispectralData& data, const LayerStack& stack,
     if (unknown.any())
         bare.errors.directions = stack_directions(numbers, fit, inversion);
     const Matrix gaps = 0.0 * bare.value; // NaN where nothing was measured
-    result.data.blocks.assign(
-        1, {std::nullopt, bare.value, bare.errors.entry_variance().cwiseSqrt() + gaps});
+    result.data.blocks.assign(1, {std::nullopt, bare.value, bare.own_variance.cwiseSqrt() + gaps});
     note_guesses(measured, bare, result.notes);
     result.errors = std::move(bare.errors);
     return result;

@@ -36,10 +36,10 @@ struct StackEstimate {
 
 /// Data of a sample under a stack turned into those of the bare substrate.
 struct SubstrateData {
-    BispectralData data; ///< one block without geometry
+    BispectralData data; ///< one block without geometry; of its errors those of single entries
     LayerStack stack;    ///< with the unknown numbers as found
     StackEstimate estimate;
-    std::optional<SharedErrors> errors; ///< of `data`; empty: there was no stack
+    std::optional<SharedErrors> errors; ///< of `data`, all of them; empty: there was no stack
     bool noise_is_estimated = false;    ///< the standard errors of `data` come from an estimate
     std::vector<std::string> notes;
 };

@@ -149,6 +149,10 @@ BareMatrix bare_matrix(const UncertainMatrix& under, const Eigen::VectorXd& r,
     bare.errors.left = (identity - whole * r.asDiagonal()).middleRows(o, rows);
     bare.errors.right = (identity - r.asDiagonal() * whole).middleCols(i, columns);
     bare.errors.variance = full.variance;
+    bare.own_variance =
+        bare.errors.left.middleCols(o, rows).diagonal().cwiseAbs2().asDiagonal() *
+        full.variance.block(o, i, rows, columns) *
+        bare.errors.right.middleRows(i, columns).diagonal().cwiseAbs2().asDiagonal();
     return bare;
 }
 

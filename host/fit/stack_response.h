@@ -35,8 +35,11 @@ UncertainMatrix under_the_stack(const BispectralData& data, const StackResponse&
 /// A matrix and its errors.
 struct BareMatrix {
     Eigen::MatrixXd value; ///< (emission, excitation), NaN where it was not measured
-    SharedErrors errors;   ///< without directions
-    int guessed = 0;       ///< bands whose reflectance had to be guessed
+    /// What an entry's own error of B makes of it. The rest is shared: it moves rows and columns as
+    /// wholes, which sums of products of curves follow exactly, so that it must not weaken weights.
+    Eigen::MatrixXd own_variance;
+    SharedErrors errors; ///< all of it, without directions
+    int guessed = 0;     ///< bands whose reflectance had to be guessed
 };
 
 /// M = B (I + diag(r) B)^-1 on the data's grids with first-order errors (dM = (I - M R) dB (I -
