@@ -17,8 +17,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Spline spacings that the evidence chooses from, in steps of the grid, beside one number a band.
 constexpr double spacings_in_steps[] = {1.5, 2.0, 3.0};
-/// Steps that each start is given at first: nearly all end in half as many, and one that does not
-/// is rarely the best.
+/// Steps that each start is given at first: nearly all end in half as many; otherwise the best of
+/// them goes on.
 constexpr int first_steps = 80;
 /// Of both curves of a term.
 constexpr std::size_t fewest_knots = 4;
@@ -39,8 +39,10 @@ public:
         SolverSettings solver = settings_.solver;
         solver.most_iterations = std::min(solver.most_iterations, first_steps);
         FittedCandidate best = best_of(rank, bases, starts, solver);
-        return best.fit.trace.converged ? std::move(best)
-                                        : best_of(rank, bases, starts, settings_.solver);
+        if (best.fit.trace.converged)
+            return best;
+        const FactorCurves reached = best.model->curves(best.fit.parameters);
+        return best_of(rank, bases, {reached}, settings_.solver);
     }
 
     CurveBases splines(double spacing_nm) const {

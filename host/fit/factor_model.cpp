@@ -133,7 +133,7 @@ private:
 /// of a term are equally long) and their precision is hundreds at least, so that these priors do
 /// not count. Where they do not, as in a column whose emission the spill hides, a curve goes on
 /// straight (or bridges a gap) rather than ending at a cliff, and nothing grows without bound.
-constexpr double bend_width = 3.0, coefficient_width = 30.0;
+constexpr double bend_width = 0.3, coefficient_width = 10.0;
 
 /// Sum of factor times block over some blocks: K residuals.
 class LinearPrior final : public ceres::CostFunction {

@@ -40,7 +40,7 @@ struct FitSettings {
     std::optional<double> spill_nm;
     std::optional<LayerStack> stack; ///< what lay above the sample; empty: nothing did
     UnknownLayers unknown;           ///< what of the stack is fitted together with the matrix
-    int starts = 4;                  ///< initial guesses that are tried
+    int starts = 3;                  ///< initial guesses that are tried
     SolverSettings solver;
     unsigned seed = 0; ///< of the random starts
 };

@@ -124,14 +124,12 @@ TEST(Stiff, FewerDataThanNumbersAreRefused) {
     }
 }
 
-TEST(Stiff, YieldOfASampleThatReflectsAllIsUnknown) {
-    const ReradiationMatrix truth = true_matrix({{440.0, 30.0, 0.01, 600.0, 25.0, 0.7}},
-                                                emission_10_nm(), excitation_10_nm(), 1.0);
+TEST(Stiff, YieldOfWhatHardlyAbsorbsIsUnknown) {
+    const ReradiationMatrix truth = true_matrix({{440.0, 30.0, 0.02, 600.0, 25.0, 0.7}},
+                                                emission_10_nm(), excitation_10_nm(), 0.97);
     BispectralData data = noisy_data(truth, 0.01 * stokes_peak(truth), true, 9);
-    for (int i = 8; i < data.excitation.count; ++i) {
-        data.blocks[0].value(i - 8, i) = 1.0 - 1e-4;
-        data.blocks[0].sigma(i - 8, i) = 0.01;
-    }
+    for (int i = 8; i < data.excitation.count; ++i)
+        data.blocks[0].sigma(i - 8, i) = 0.2; // where 2 % are absorbed
     const FitResult result = fit(data, 1);
     ASSERT_EQ(result.quantum_yield.size(), 1u);
     EXPECT_TRUE(std::isnan(result.quantum_yield[0].value));
