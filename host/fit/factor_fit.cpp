@@ -1,6 +1,7 @@
 #include "host/fit/factor_fit.h"
 
 #include "host/error.h"
+#include "host/fit/hidden_bands.h"
 #include "host/fit/knot_choice.h"
 
 #include <fmt/format.h>
@@ -42,7 +43,7 @@ public:
         if (best.fit.trace.converged)
             return best;
         const FactorCurves reached = best.model->curves(best.fit.parameters);
-        return best_of(rank, bases, {reached}, settings_.solver);
+        return fit_from(rank, bases, reached, settings_.solver);
     }
 
     CurveBases splines(double spacing_nm) const {
@@ -83,10 +84,7 @@ private:
         FittedCandidate best;
         for (const FactorCurves& start : starts) {
             FittedCandidate candidate = fit_from(rank, bases, start, solver);
-            const bool better = candidate.fit.trace.converged != best.fit.trace.converged
-                                    ? candidate.fit.trace.converged
-                                    : candidate.criterion < best.criterion;
-            if (!best.model || better)
+            if (!best.model || candidate.fit.chi_squared < best.fit.chi_squared)
                 best = std::move(candidate);
         }
         return best;
@@ -106,6 +104,11 @@ private:
         candidate.fit =
             minimise_within_budget(*model, target_, *candidate.penalty, parameters, solver, begin_);
         model->balance(candidate.fit.parameters);
+        if (emission.is_per_band() && excitation.is_per_band()) {
+            FactorCurves curves = model->curves(candidate.fit.parameters);
+            bridge_hidden_bands(target_, curves);
+            candidate.fit.parameters = model->parameters(curves.emission, curves.excitation);
+        }
         // One number a term is only a choice of unit; numbers at zero were not needed.
         const Eigen::Index numbers = (candidate.fit.parameters.array() > 0.0).count() - rank;
         candidate.criterion = information_criterion(candidate.fit.chi_squared, numbers,

@@ -130,34 +130,30 @@ private:
 };
 
 /// Where data determine a coefficient, its values are about 1 (the data's peak is 1 and both curves
-/// of a term are equally long) and their precision is hundreds at least, so that these priors do
-/// not count. Where they do not, as in a column whose emission the spill hides, a curve goes on
-/// straight (or bridges a gap) rather than ending at a cliff, and nothing grows without bound.
-constexpr double bend_width = 0.3, coefficient_width = 10.0;
+/// of a term are equally long). Where they do not, in columns that hold next to nothing that the
+/// term emits, a prior of this width keeps it from growing without bound. In all it adds about 2
+/// to the chi squared.
+constexpr double prior_width = 10.0;
 
-/// Sum of factor times block over some blocks: K residuals.
-class LinearPrior final : public ceres::CostFunction {
+/// coefficient / prior_width for the K coefficients of a block.
+class CoefficientPrior final : public ceres::CostFunction {
 public:
-    LinearPrior(int rank, std::vector<double> factors) : rank_(rank), factors_(std::move(factors)) {
+    explicit CoefficientPrior(int rank) : rank_(rank) {
         set_num_residuals(rank);
-        mutable_parameter_block_sizes()->assign(factors_.size(), rank);
+        mutable_parameter_block_sizes()->push_back(rank);
     }
     bool Evaluate(double const* const* parameters, double* residuals,
                   double** jacobians) const override {
-        Eigen::Map<Vector> sum(residuals, rank_);
-        sum.setZero();
-        for (std::size_t b = 0; b < factors_.size(); ++b) {
-            sum += factors_[b] * Eigen::Map<const Vector>(parameters[b], rank_);
-            if (jacobians != nullptr && jacobians[b] != nullptr)
-                Eigen::Map<Matrix>(jacobians[b], rank_, rank_) =
-                    factors_[b] * Matrix::Identity(rank_, rank_);
-        }
+        Eigen::Map<Vector>(residuals, rank_) =
+            Eigen::Map<const Vector>(parameters[0], rank_) / prior_width;
+        if (jacobians != nullptr && jacobians[0] != nullptr)
+            Eigen::Map<Matrix>(jacobians[0], rank_, rank_) =
+                Matrix::Identity(rank_, rank_) / prior_width;
         return true;
     }
 
 private:
     int rank_;
-    std::vector<double> factors_;
 };
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -180,12 +176,8 @@ void FactorModel::add_residuals(ceres::Problem& problem, const std::vector<doubl
         for (std::size_t a = 0; a < support.values.size(); ++a)
             list.push_back(blocks[first + static_cast<std::size_t>(support.first) + a]);
     };
-    for (const PriorRow& row : prior_rows()) {
-        const auto first = blocks.begin() + static_cast<std::ptrdiff_t>(row.first_block);
-        problem.AddResidualBlock(
-            new LinearPrior(rank_, row.factors), nullptr,
-            std::vector<double*>(first, first + static_cast<std::ptrdiff_t>(row.factors.size())));
-    }
+    for (double* const block : blocks)
+        problem.AddResidualBlock(new CoefficientPrior(rank_), nullptr, block);
     ceres::LossFunction* const loss = make_loss(loss_);
     for (Eigen::Index i = 0; i < target_.value.cols(); ++i) {
         const Support x = support_at(excitation_, i);
@@ -211,32 +203,9 @@ void FactorModel::add_residuals(ceres::Problem& problem, const std::vector<doubl
     }
 }
 
-std::vector<FactorModel::PriorRow> FactorModel::prior_rows() const {
-    std::vector<PriorRow> rows;
-    Eigen::Index first = 0;
-    for (const SmoothBasis* const basis : {&emission_, &excitation_}) {
-        for (Eigen::Index j = 0; j < basis->size(); ++j)
-            rows.push_back({first + j, {1.0 / coefficient_width}});
-        // Knots lie where the curve bends.
-        for (Eigen::Index j = 0; basis->knots.empty() && j + 2 < basis->size(); ++j)
-            rows.push_back({first + j, {1.0 / bend_width, -2.0 / bend_width, 1.0 / bend_width}});
-        first += basis->size();
-    }
-    return rows;
-}
-
 Matrix FactorModel::prior_jacobian() const {
-    const std::vector<PriorRow> rows = prior_rows();
-    Matrix jacobian = Matrix::Zero(static_cast<Eigen::Index>(rows.size()) * rank_,
-                                   (emission_.size() + excitation_.size()) * rank_);
-    for (std::size_t r = 0; r < rows.size(); ++r)
-        for (std::size_t b = 0; b < rows[r].factors.size(); ++b)
-            jacobian
-                .block(static_cast<Eigen::Index>(r) * rank_,
-                       (rows[r].first_block + static_cast<Eigen::Index>(b)) * rank_, rank_, rank_)
-                .diagonal()
-                .setConstant(rows[r].factors[b]);
-    return jacobian;
+    const Eigen::Index count = (emission_.size() + excitation_.size()) * rank_;
+    return Matrix::Identity(count, count) / prior_width;
 }
 
 std::size_t FactorModel::stored_numbers() const {

@@ -45,13 +45,6 @@ public:
     void balance(Eigen::VectorXd& parameters) const;
 
 private:
-    /// Factors of consecutive blocks whose sum is expected near to zero, in standard deviations.
-    struct PriorRow {
-        Eigen::Index first_block;
-        std::vector<double> factors;
-    };
-    std::vector<PriorRow> prior_rows() const;
-
     const FitTarget& target_;
     int rank_;
     SmoothBasis emission_, excitation_;

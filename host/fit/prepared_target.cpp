@@ -25,6 +25,12 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
+/// Files carry no more digits, and the rounding of a unit must not choose among solutions that fit
+/// nearly alike.
+Matrix single_precision(const Matrix& values) {
+    return values.cast<float>().cast<double>();
+}
+
 Matrix entries_off_the_diagonal(const FitTarget& target, double spill_nm) {
     Matrix off(target.value.rows(), target.value.cols());
     for (int i = 0; i < target.excitation.count; ++i)
@@ -137,6 +143,7 @@ void set_weights(const BispectralBlock& block, const Matrix& used, PreparedTarge
             std::isfinite(block.sigma(k)) ? std::max(block.sigma(k), floor) : prepared.noise;
         target.weight(k) = used(k) > 0.0 ? target.scale / sigma : 0.0;
     }
+    target.weight = single_precision(target.weight);
 }
 
 } // namespace
@@ -189,7 +196,7 @@ PreparedTarget prepare_target(const BispectralData& data, const TargetSettings& 
     const Matrix kept = (used.array() > 0.0).select(block.value, target.value);
     const double peak = kept.cwiseAbs().maxCoeff();
     target.scale = peak > 0.0 ? peak : 1.0;
-    target.value = kept / target.scale;
+    target.value = single_precision(kept / target.scale);
     set_weights(block, used, prepared);
     read_diagonal(data, prepared);
     note_empty_columns(prepared, block.value, prepared.notes);
