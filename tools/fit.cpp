@@ -24,6 +24,7 @@ struct FitOptions {
     std::string model = "factors", loss = "none";
     std::optional<int> rank;
     std::optional<double> smooth_nm, spill_nm;
+    std::optional<std::size_t> bytes;
     std::vector<std::string> unknown;
     bool anti_stokes = false;
     double seconds = 60.0;
@@ -36,6 +37,7 @@ FitSettings settings_of(const FitOptions& options, const CommonOptions& common) 
     settings.loss = robust_loss_from_name(options.loss);
     settings.rank = options.rank;
     settings.smooth_nm = options.smooth_nm;
+    settings.most_bytes = options.bytes;
     settings.spill_nm = options.spill_nm;
     settings.anti_stokes = options.anti_stokes;
     settings.unknown = unknown_layers_from_names(options.unknown);
@@ -53,10 +55,12 @@ void print_summary(const FitOptions& options, const FitResult& result) {
         "{}: model {}, {} terms, {} bytes, relative RMSE {:.4f}, {} iterations in {:.2f} s\n",
         options.output.string(), fit_model_name(result.model), result.rank, result.bytes,
         result.relative_rmse, result.trace.iterations, result.seconds);
-    for (std::size_t k = 0; k < result.quantum_yield.size(); ++k)
-        fmt::print("quantum yield {}: {:.3f} ({:.3f} to {:.3f})\n", k + 1,
-                   result.quantum_yield[k].value, result.quantum_yield[k].low,
-                   result.quantum_yield[k].high);
+    for (std::size_t k = 0; k < result.quantum_yield.size(); ++k) {
+        const QuantumYield& yield = result.quantum_yield[k];
+        if (std::isfinite(yield.value))
+            fmt::print("quantum yield {}: {:.3f} ({:.3f} to {:.3f})\n", k + 1, yield.value,
+                       yield.low, yield.high);
+    }
     fmt::print("the data determine {} of {} numbers\n", result.covariance_rank, result.parameters);
     if (result.stack)
         for (std::size_t k = 0; k < result.stack->names.size(); ++k)
@@ -119,8 +123,13 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
         ->capture_default_str();
     command->add_option("--rank", options->rank,
                         "terms: 1 to 4 factors or 1 to 24 gaussians; default: by evidence");
-    command->add_option("--smooth-nm", options->smooth_nm,
-                        "spacing of the spline functions of factors, 0: one number a band");
+    CLI::Option* const smooth =
+        command->add_option("--smooth-nm", options->smooth_nm,
+                            "spacing of the spline functions of factors, 0: one number a band");
+    command
+        ->add_option("--bytes", options->bytes,
+                     "largest compact form of factors: values at the bands that matter most")
+        ->excludes(smooth);
     command
         ->add_option("--spill-nm", options->spill_nm,
                      "entries this near to the diagonal are not fitted; default: one band")

@@ -48,6 +48,31 @@ Matrix data_jacobian(const Matrix& entries, const Matrix& weights, const FitTarg
     return rows;
 }
 
+/// Weighted residuals of used entries in the order of data_jacobian, zero for its other rows.
+Vector seen_residuals(const Matrix& residual, const Matrix& weights, const FitTarget& target,
+                      Eigen::Index rows) {
+    Vector seen = Vector::Zero(rows);
+    Eigen::Index next = 0;
+    for (Eigen::Index k = 0; k < residual.size(); ++k)
+        if (target.weight(k) > 0.0)
+            seen(next++) = residual(k) * weights(k) / target.weight(k);
+    return seen;
+}
+
+/// Replaces the covariance of an estimate gain * entries, gain = C J^T W, by what shared errors of
+/// the entries (in units of `unit`) and the prior make of it.
+void share_errors(const Matrix& entries, const Matrix& weights, const Matrix& prior,
+                  const SharedErrors& errors, double unit, double variance,
+                  Covariance& covariance) {
+    const Vector squared = weights.cwiseAbs2().reshaped();
+    const Matrix pull = squared.asDiagonal() * (entries * covariance.root);
+    const Matrix of_data =
+        std::sqrt(variance) * unit * errors.root(covariance.root * pull.transpose() / variance);
+    const Matrix of_prior = covariance.root * (prior * covariance.root).transpose();
+    covariance.root.resize(of_data.rows(), of_data.cols() + of_prior.cols());
+    covariance.root << of_data, of_prior;
+}
+
 std::vector<bool> firmly_at_zero(const TermModel& model, const Vector& parameters,
                                  const Vector& gradient, const Matrix& jacobian) {
     std::vector<bool> held;
@@ -111,26 +136,31 @@ Covariance covariance_of(const Matrix& jacobian, const std::vector<bool>& held, 
 }
 
 Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitTarget& target,
-                         const PhotonPenalty& penalty, RobustLoss loss, bool noise_is_estimated) {
+                         const PhotonPenalty& penalty, RobustLoss loss, bool noise_is_estimated,
+                         const SharedErrors* errors) {
     const Matrix entries = model.entry_jacobian(fit.parameters);
     const Matrix residual =
         (model.matrix(fit.parameters) - target.value).cwiseProduct(target.weight);
-    const Matrix robust = robust_weights(residual, loss);
-    const Matrix jacobian =
-        data_jacobian(entries, target.weight.cwiseProduct(robust), target, penalty);
-    Vector seen(jacobian.rows());
-    seen.setZero();
-    Eigen::Index next = 0;
-    for (Eigen::Index k = 0; k < residual.size(); ++k)
-        if (target.weight(k) > 0.0)
-            seen(next++) = residual(k) * robust(k);
+    const Matrix weights = target.weight.cwiseProduct(robust_weights(residual, loss));
+    const Matrix jacobian = data_jacobian(entries, weights, target, penalty);
+    const Vector seen = seen_residuals(residual, weights, target, jacobian.rows());
+    const double used = (target.weight.array() > 0.0).cast<double>().sum();
     const double freedom =
-        std::max(1.0, static_cast<double>(next) -
-                          static_cast<double>((fit.parameters.array() > 0.0).count()));
+        std::max(1.0, used - static_cast<double>((fit.parameters.array() > 0.0).count()));
     const double reduced = seen.squaredNorm() / freedom;
-    return covariance_of(
-        jacobian, firmly_at_zero(model, fit.parameters, jacobian.transpose() * seen, jacobian),
-        noise_is_estimated ? reduced : std::max(1.0, reduced));
+    const double variance = noise_is_estimated ? reduced : std::max(1.0, reduced);
+    const std::vector<bool> held =
+        firmly_at_zero(model, fit.parameters, jacobian.transpose() * seen, jacobian);
+    Covariance covariance = covariance_of(jacobian, held, variance);
+    const Matrix prior = model.prior_jacobian();
+    if (prior.rows() > 0) {
+        Matrix both(jacobian.rows() + prior.rows(), jacobian.cols());
+        both << jacobian, std::sqrt(variance) * prior;
+        covariance.root = covariance_of(both, held, variance).root;
+    }
+    if (errors != nullptr)
+        share_errors(entries, weights, prior, *errors, 1.0 / target.scale, variance, covariance);
+    return covariance;
 }
 
 NormalisedCurves normalised_curves(const TermModel& model, const Vector& parameters,

@@ -3,6 +3,7 @@
 #include "host/fit/budget_solver.h"
 #include "host/fit/fit.h"
 #include "host/fit/quantum_yield.h"
+#include "host/fit/shared_errors.h"
 
 #include <Eigen/Core>
 
@@ -12,9 +13,10 @@ namespace reradiant {
 
 /// Gauss-Newton covariance of parameters, root * root^T.
 struct Covariance {
-    Eigen::MatrixXd root; ///< (parameters, rank); rows of held parameters are zero
-    int rank = 0;         ///< directions that the data determine
-    int free = 0;         ///< parameters that were not held
+    Eigen::MatrixXd root;  ///< (parameters, rank); rows of held parameters are zero
+    int rank = 0;          ///< directions that the data determine
+    int free = 0;          ///< parameters that were not held
+    double variance = 1.0; ///< of a residual, which `root` holds
 
     /// Standard errors of quantities with this Jacobian (quantities, parameters).
     Eigen::VectorXd sigma(const Eigen::MatrixXd& jacobian) const;
@@ -28,9 +30,12 @@ Covariance covariance_of(const Eigen::MatrixXd& jacobian, const std::vector<bool
 
 /// Covariance of a model at its optimum. Parameters at zero that the data push against zero by more
 /// than two standard errors are held; those that are there by chance are not, so that their error
-/// bands are not empty. Active photon balances count as exact.
+/// bands are not empty. Active photon balances count as exact, priors as they are: what the data do
+/// not determine is as uncertain as its prior. `free` and `rank` are of the data alone. With
+/// `errors` those of the entries are shared, not independent as the weights suppose (White 1980).
 Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitTarget& target,
-                         const PhotonPenalty& penalty, RobustLoss loss, bool noise_is_estimated);
+                         const PhotonPenalty& penalty, RobustLoss loss, bool noise_is_estimated,
+                         const SharedErrors* errors);
 
 /// Normalised curves of a model and their errors (FitResult); unit 1/nm and 1.
 struct NormalisedCurves {

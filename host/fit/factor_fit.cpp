@@ -1,6 +1,13 @@
 #include "host/fit/factor_fit.h"
 
+#include "host/error.h"
+#include "host/fit/hidden_bands.h"
+#include "host/fit/knot_choice.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace reradiant {
@@ -11,23 +18,16 @@ using Clock = std::chrono::steady_clock;
 
 /// Spline spacings that the evidence chooses from, in steps of the grid, beside one number a band.
 constexpr double spacings_in_steps[] = {1.5, 2.0, 3.0};
-/// Steps that each start is given at first: nearly all end in half as many, and one that does not
-/// is rarely the best.
+/// Steps that each start is given at first: nearly all end in half as many; otherwise the best of
+/// them goes on.
 constexpr int first_steps = 80;
+/// Of both curves of a term.
+constexpr std::size_t fewest_knots = 4;
 
-/// Values of a curve at bands that no used entry depends on, from their neighbours on both sides.
-void bridge_gaps(const Eigen::ArrayXd& used, Eigen::MatrixXd& curves) {
-    Eigen::Index last = -1;
-    for (Eigen::Index band = 0; band < used.size(); ++band) {
-        if (used(band) <= 0.0)
-            continue;
-        for (Eigen::Index gap = last + 1; last >= 0 && gap < band; ++gap) {
-            const double share = static_cast<double>(gap - last) / static_cast<double>(band - last);
-            curves.row(gap) = (1.0 - share) * curves.row(last) + share * curves.row(band);
-        }
-        last = band;
-    }
-}
+/// Functions of both curves.
+struct CurveBases {
+    SmoothBasis emission, excitation;
+};
 
 class FactorFitter {
 public:
@@ -35,12 +35,39 @@ public:
                  Clock::time_point begin)
         : target_(target), settings_(settings), evidence_(evidence), begin_(begin) {}
 
-    FittedCandidate fit(int rank, double spacing_nm, const std::vector<FactorCurves>& starts) {
+    FittedCandidate fit(int rank, const CurveBases& bases,
+                        const std::vector<FactorCurves>& starts) {
         SolverSettings solver = settings_.solver;
         solver.most_iterations = std::min(solver.most_iterations, first_steps);
-        FittedCandidate best = best_of(rank, spacing_nm, starts, solver);
-        return best.fit.trace.converged ? std::move(best)
-                                        : best_of(rank, spacing_nm, starts, settings_.solver);
+        FittedCandidate best = best_of(rank, bases, starts, solver);
+        if (best.fit.trace.converged)
+            return best;
+        const FactorCurves reached = best.model->curves(best.fit.parameters);
+        return fit_from(rank, bases, reached, settings_.solver);
+    }
+
+    CurveBases splines(double spacing_nm) const {
+        return {spline_basis(target_.emission, spacing_nm),
+                spline_basis(target_.excitation, spacing_nm)};
+    }
+
+    /// The fit with curves that are linear between as many bands as some bytes hold.
+    FittedCandidate within(std::size_t bytes, FittedCandidate full) {
+        if (!full.model || 4 * full.model->stored_numbers() <= bytes)
+            return full;
+        const int rank = full.model->terms();
+        const std::size_t numbers = bytes / 4, positions = numbers_of_positions(target_);
+        const auto terms = static_cast<std::size_t>(rank);
+        if (numbers < positions + fewest_knots * terms)
+            throw_input_error(
+                {}, fmt::format("--bytes {} is too small for {} terms", bytes, rank),
+                fmt::format("give at least {}", 4 * (positions + fewest_knots * terms)));
+        const FactorCurves curves = full.model->curves(full.fit.parameters);
+        const CurveKnots knots = choose_knots(target_, curves, (numbers - positions) / terms);
+        return fit(rank,
+                   {hat_basis(target_.emission, knots.emission),
+                    hat_basis(target_.excitation, knots.excitation)},
+                   {curves});
     }
 
     std::vector<FactorCurves> starts(int rank, const FactorCurves& smaller) const {
@@ -52,24 +79,20 @@ public:
     }
 
 private:
-    FittedCandidate best_of(int rank, double spacing_nm, const std::vector<FactorCurves>& starts,
-                            const SolverSettings& solver) {
+    FittedCandidate best_of(int rank, const CurveBases& bases,
+                            const std::vector<FactorCurves>& starts, const SolverSettings& solver) {
         FittedCandidate best;
         for (const FactorCurves& start : starts) {
-            FittedCandidate candidate = fit_from(rank, spacing_nm, start, solver);
-            const bool better = candidate.fit.trace.converged != best.fit.trace.converged
-                                    ? candidate.fit.trace.converged
-                                    : candidate.criterion < best.criterion;
-            if (!best.model || better)
+            FittedCandidate candidate = fit_from(rank, bases, start, solver);
+            if (!best.model || candidate.fit.chi_squared < best.fit.chi_squared)
                 best = std::move(candidate);
         }
         return best;
     }
 
-    FittedCandidate fit_from(int rank, double spacing_nm, const FactorCurves& start,
+    FittedCandidate fit_from(int rank, const CurveBases& bases, const FactorCurves& start,
                              const SolverSettings& solver) {
-        const SmoothBasis emission = spline_basis(target_.emission, spacing_nm);
-        const SmoothBasis excitation = spline_basis(target_.excitation, spacing_nm);
+        const auto& [emission, excitation] = bases;
         FittedCandidate candidate;
         candidate.penalty = std::make_unique<PhotonPenalty>(target_.value.cols());
         auto model = std::make_unique<FactorModel>(target_, rank, emission, excitation,
@@ -81,22 +104,20 @@ private:
         candidate.fit =
             minimise_within_budget(*model, target_, *candidate.penalty, parameters, solver, begin_);
         model->balance(candidate.fit.parameters);
-        if (emission.is_per_band() && excitation.is_per_band())
-            bridge(*model, candidate.fit.parameters);
+        if (emission.is_per_band() && excitation.is_per_band()) {
+            FactorCurves curves = model->curves(candidate.fit.parameters);
+            bridge_hidden_bands(target_, curves);
+            candidate.fit.parameters = model->parameters(curves.emission, curves.excitation);
+        }
         // One number a term is only a choice of unit; numbers at zero were not needed.
         const Eigen::Index numbers = (candidate.fit.parameters.array() > 0.0).count() - rank;
         candidate.criterion = information_criterion(candidate.fit.chi_squared, numbers,
                                                     target_.used_count(), evidence_);
         candidate.spacing_nm = emission.spacing_nm;
+        candidate.emission_knots = emission.knots;
+        candidate.excitation_knots = excitation.knots;
         candidate.model = std::move(model);
         return candidate;
-    }
-
-    void bridge(const FactorModel& model, Eigen::VectorXd& parameters) const {
-        FactorCurves curves = model.curves(parameters);
-        bridge_gaps(target_.weight.rowwise().sum().array(), curves.emission);
-        bridge_gaps(target_.weight.colwise().sum().transpose().array(), curves.excitation);
-        parameters = model.parameters(curves.emission, curves.excitation);
     }
 
     const FitTarget& target_;
@@ -114,27 +135,30 @@ FactorCurves curves_of(const FittedCandidate& candidate) {
 FittedCandidate fit_factors(const FitTarget& target, const FitSettings& settings, Evidence evidence,
                             Clock::time_point begin) {
     FactorFitter fitter(target, settings, evidence, begin);
-    const double spacing_nm = settings.smooth_nm.value_or(0.0);
+    const CurveBases bases = fitter.splines(settings.smooth_nm.value_or(0.0));
+    const std::size_t most_bytes =
+        settings.most_bytes.value_or(std::numeric_limits<std::size_t>::max());
     FactorCurves smaller = fitter.no_curves();
     if (settings.rank) {
         for (int rank = 1; rank < *settings.rank; ++rank)
             smaller = fitter.starts(rank, smaller).front();
-        return fitter.fit(*settings.rank, spacing_nm, fitter.starts(*settings.rank, smaller));
+        return fitter.within(
+            most_bytes, fitter.fit(*settings.rank, bases, fitter.starts(*settings.rank, smaller)));
     }
     FittedCandidate best = dark_candidate(target, evidence);
     for (int rank = 1; rank <= largest_factor_rank; ++rank) {
-        FittedCandidate next = fitter.fit(rank, spacing_nm, fitter.starts(rank, smaller));
+        FittedCandidate next = fitter.fit(rank, bases, fitter.starts(rank, smaller));
         smaller = curves_of(next);
         if (next.criterion >= best.criterion)
             break;
         best = std::move(next);
     }
-    if (!best.model || settings.smooth_nm)
-        return best;
+    if (!best.model || settings.smooth_nm || settings.most_bytes)
+        return fitter.within(most_bytes, std::move(best));
     const FactorCurves start = curves_of(best);
     for (const double steps : spacings_in_steps) {
-        FittedCandidate smooth =
-            fitter.fit(best.model->terms(), steps * target.emission.step_nm, {start});
+        FittedCandidate smooth = fitter.fit(
+            best.model->terms(), fitter.splines(steps * target.emission.step_nm), {start});
         if (smooth.criterion < best.criterion && smooth.fit.trace.converged)
             best = std::move(smooth);
     }

@@ -1,5 +1,7 @@
 #include "host/fit/factor_model.h"
 
+#include "host/fit/knot_choice.h"
+
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
 
@@ -199,6 +201,17 @@ void FactorModel::add_residuals(ceres::Problem& problem, const std::vector<doubl
                 nullptr, used);
         }
     }
+}
+
+Matrix FactorModel::prior_jacobian() const {
+    const Eigen::Index count = (emission_.size() + excitation_.size()) * rank_;
+    return Matrix::Identity(count, count) / prior_width;
+}
+
+std::size_t FactorModel::stored_numbers() const {
+    const std::size_t positions =
+        emission_.knots.empty() && excitation_.knots.empty() ? 0 : numbers_of_positions(target_);
+    return static_cast<std::size_t>(rank_ * (emission_.size() + excitation_.size())) + positions;
 }
 
 Matrix FactorModel::emission_coefficients(const Vector& parameters) const {

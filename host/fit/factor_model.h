@@ -28,14 +28,14 @@ public:
     FactorCurves curves(const Eigen::VectorXd& parameters) const override;
     Eigen::MatrixXd matrix(const Eigen::VectorXd& parameters) const override;
     Eigen::MatrixXd entry_jacobian(const Eigen::VectorXd& parameters) const override;
+    Eigen::MatrixXd prior_jacobian() const override;
     int terms() const override { return rank_; }
     int term_of(Eigen::Index parameter) const override {
         return static_cast<int>(parameter % rank_);
     }
     int free_units() const override { return 1; }
-    std::size_t stored_numbers() const override {
-        return static_cast<std::size_t>(rank_ * (emission_.size() + excitation_.size()));
-    }
+    /// Coefficients, and where chosen knots lie.
+    std::size_t stored_numbers() const override;
     Eigen::VectorXd parameters(const Eigen::MatrixXd& emission_coefficients,
                                const Eigen::MatrixXd& excitation_coefficients) const;
     /// Coefficients, (functions, K).

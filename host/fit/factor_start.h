@@ -17,9 +17,9 @@ struct FactorCurves {
 /// that no used entry depends on become zero. Returns chi squared.
 double descend_factors(const FitTarget& target, FactorCurves& curves, int sweeps);
 
-/// Initial guesses of a rank >= 1, best first, each after some descent: from the singular vectors
-/// (Boutsidis and Gallopoulos 2008), from the best of the rank below (may be of rank 0) plus one
-/// term, and random ones.
+/// The best `starts` initial guesses of a rank >= 1, best first, each after some descent: from the
+/// singular vectors (Boutsidis and Gallopoulos 2008), from the best of the rank below (may be of
+/// rank 0) plus one term, and random ones.
 std::vector<FactorCurves> factor_starts(const FitTarget& target, int rank,
                                         const FactorCurves& smaller, int starts, unsigned seed);
 

@@ -23,12 +23,17 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Clock = std::chrono::steady_clock;
 
-void check_rank(const FitSettings& settings) {
+void check_model(const FitSettings& settings) {
     const int most =
         settings.model == FitModel::Factors ? largest_factor_rank : largest_gaussian_count;
     if (settings.rank && settings.model == FitModel::Matrix)
         throw_input_error({}, "--rank does not go with the model matrix",
                           "leave it out or choose factors or gaussians");
+    if (settings.most_bytes && settings.model != FitModel::Factors)
+        throw_input_error(
+            {},
+            fmt::format("--bytes does not go with the model {}", fit_model_name(settings.model)),
+            "leave it out or choose factors");
     if (settings.rank && (*settings.rank < 1 || *settings.rank > most))
         throw_input_error(
             {}, fmt::format("--rank {} is out of range", *settings.rank),
@@ -47,10 +52,10 @@ void set_error_bands(const FittedCandidate& candidate, const PreparedTarget& pre
                      const FitSettings& settings, FitResult& result) {
     const TermModel& model = *candidate.model;
     const Vector& parameters = candidate.fit.parameters;
+    const Matrix jacobian = model.entry_jacobian(parameters);
     const Covariance covariance =
         covariance_at(model, candidate.fit, prepared.target, *candidate.penalty, settings.loss,
-                      prepared.noise_is_estimated);
-    const Matrix jacobian = model.entry_jacobian(parameters);
+                      prepared.noise_is_estimated, prepared.errors ? &*prepared.errors : nullptr);
     result.sigma = prepared.target.scale *
                    covariance.sigma(jacobian).reshaped(result.sigma.rows(), result.sigma.cols());
     // Where a whole column is missing, the model only bridges its neighbours.
@@ -72,6 +77,13 @@ void set_error_bands(const FittedCandidate& candidate, const PreparedTarget& pre
             result.parameters - result.covariance_rank));
 }
 
+std::vector<double> centres_of(const std::vector<int>& bands, const WavelengthGrid& grid) {
+    std::vector<double> nm;
+    for (const int band : bands)
+        nm.push_back(grid.centre_nm(band));
+    return nm;
+}
+
 void take_terms(const BispectralData& data, const FittedCandidate& candidate,
                 const PreparedTarget& prepared, const FitSettings& settings, FitResult& result) {
     result.trace = candidate.fit.trace;
@@ -86,10 +98,23 @@ void take_terms(const BispectralData& data, const FittedCandidate& candidate,
     refuse_too_few_data(data, used, needed);
     result.rank = candidate.model->terms();
     result.spacing_nm = candidate.spacing_nm;
+    result.emission_knots_nm = centres_of(candidate.emission_knots, data.emission);
+    result.excitation_knots_nm = centres_of(candidate.excitation_knots, data.excitation);
     result.bytes = 4 * candidate.model->stored_numbers();
     result.matrix.values =
         prepared.target.scale * candidate.model->matrix(candidate.fit.parameters);
     set_error_bands(candidate, prepared, settings, result);
+}
+
+/// What entries share does not average out over them; so much more than their own error.
+void add_shared_errors(const PreparedTarget& prepared, Matrix& sigma) {
+    const FitTarget& target = prepared.target;
+    const Matrix all = prepared.errors->entry_variance();
+    for (Eigen::Index k = 0; k < sigma.size(); ++k)
+        if (target.weight(k) > 0.0)
+            sigma(k) =
+                std::sqrt(sigma(k) * sigma(k) +
+                          std::max(0.0, all(k) - std::pow(target.scale / target.weight(k), 2)));
 }
 
 void take_matrix(const MatrixFit& fit, const PreparedTarget& prepared, FitResult& result) {
@@ -97,6 +122,8 @@ void take_matrix(const MatrixFit& fit, const PreparedTarget& prepared, FitResult
     result.bytes = 4 * fit.stored_numbers;
     result.matrix.values = prepared.target.scale * fit.value;
     result.sigma = prepared.target.scale * fit.sigma;
+    if (prepared.errors)
+        add_shared_errors(prepared, result.sigma);
     const double freedom =
         std::max(1.0, static_cast<double>(prepared.target.used_count()) - fit.effective_numbers);
     result.reduced_chi_squared = fit.fit.chi_squared / freedom;
@@ -142,10 +169,13 @@ FitResult empty_result(const BispectralData& data, const PreparedTarget& prepare
     return result;
 }
 
-FitResult fit_bare(const BispectralData& data, const FitSettings& settings,
+FitResult fit_bare(const SubstrateData& substrate, const FitSettings& settings,
                    Clock::time_point begin) {
-    const PreparedTarget prepared = prepare_target(
+    const BispectralData& data = substrate.data;
+    PreparedTarget prepared = prepare_target(
         data, {settings.anti_stokes, settings.spill_nm.value_or(data.emission.step_nm)});
+    prepared.noise_is_estimated = prepared.noise_is_estimated || substrate.noise_is_estimated;
+    prepared.errors = substrate.errors;
     FitResult result = empty_result(data, prepared, settings);
     take_model(data, prepared, settings, begin, result);
     pass_diagonal(prepared, result);
@@ -177,10 +207,10 @@ const char* fit_model_name(FitModel model) {
 
 FitResult fit_reradiation(const BispectralData& data, const FitSettings& settings) {
     const Clock::time_point begin = Clock::now();
-    check_rank(settings);
-    const SubstrateData substrate =
-        invert_stack(data, settings.stack.value_or(LayerStack{}), settings.unknown);
-    FitResult result = fit_bare(substrate.data, settings, begin);
+    check_model(settings);
+    const SubstrateData substrate = invert_stack(data, settings.stack.value_or(LayerStack{}),
+                                                 settings.unknown, settings.anti_stokes);
+    FitResult result = fit_bare(substrate, settings, begin);
     result.notes.insert(result.notes.begin(), substrate.notes.begin(), substrate.notes.end());
     if (settings.unknown.any())
         result.stack = substrate.estimate;

@@ -32,17 +32,20 @@ struct FitSettings {
     /// Spacing of the spline functions of `factors`; 0: one number a band; empty: by evidence when
     /// the rank is, else one number a band.
     std::optional<double> smooth_nm;
+    /// Largest compact form of `factors`: where one number a band takes more, values are kept at
+    /// the bands that matter most and the curves are linear between them. Not with smooth_nm.
+    std::optional<std::size_t> most_bytes;
     /// Entries with |emission - excitation| up to this are not used: the reflected light that
     /// spills over from the diagonal. Empty: one emission step.
     std::optional<double> spill_nm;
     std::optional<LayerStack> stack; ///< what lay above the sample; empty: nothing did
     UnknownLayers unknown;           ///< what of the stack is fitted together with the matrix
-    int starts = 4;                  ///< initial guesses that are tried
+    int starts = 3;                  ///< initial guesses that are tried
     SolverSettings solver;
     unsigned seed = 0; ///< of the random starts
 };
 
-/// Photons emitted over photons absorbed (1 - diagonal), with its 95 % band.
+/// Photons emitted over photons absorbed (1 - diagonal), with its 95 % band; NaN: unknown.
 struct QuantumYield {
     double value, low, high;
 };
@@ -56,6 +59,8 @@ struct FitResult {
     FitModel model = FitModel::Factors;
     int rank = 0;            ///< terms; of `matrix` the numerical rank is not looked for: 0
     double spacing_nm = 0.0; ///< of the splines of `factors`; 0: one number a band
+    /// Bands whose values the curves keep, being linear between them; empty: they keep all.
+    std::vector<double> emission_knots_nm, excitation_knots_nm;
     /// Per-band, rows = emission, on the data's grid: model off the diagonal, the data's diagonal.
     ReradiationMatrix matrix;
     Eigen::MatrixXd sigma; ///< standard error of every entry of `matrix`, NaN: unknown

@@ -5,6 +5,7 @@
 #include "host/report/svg.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <limits>
@@ -24,6 +25,15 @@ double peak_memory_mib() {
 
 std::vector<double> list_of(const Eigen::VectorXd& values) {
     return {values.data(), values.data() + values.size()};
+}
+
+std::string functions_text(const FitResult& result) {
+    if (!result.emission_knots_nm.empty())
+        return fmt::format("linear between values at emission {} nm and excitation {} nm",
+                           fmt::join(result.emission_knots_nm, ", "),
+                           fmt::join(result.excitation_knots_nm, ", "));
+    return result.spacing_nm > 0.0 ? fmt::format("splines every {} nm", result.spacing_nm)
+                                   : "one number a band";
 }
 
 void add_numbers(HtmlPage& page, const BispectralData& data, const FitResult& result) {
@@ -47,9 +57,7 @@ void add_numbers(HtmlPage& page, const BispectralData& data, const FitResult& re
     if (!result.trace.seconds.empty())
         rows.push_back({"seconds", fmt::format("{:.2f}", result.trace.seconds.back())});
     if (result.model == FitModel::Factors && result.rank > 0)
-        rows.push_back({"spacing of the functions", result.spacing_nm > 0.0
-                                                        ? fmt::format("{} nm", result.spacing_nm)
-                                                        : "one number a band"});
+        rows.push_back({"functions", functions_text(result)});
     page.table({"", ""}, rows);
     for (const std::string& warning : result.warnings)
         page.paragraph("Warning: " + warning + ".");
@@ -64,6 +72,10 @@ void add_yields(HtmlPage& page, const FitResult& result) {
     std::vector<std::vector<std::string>> rows;
     for (std::size_t k = 0; k < result.quantum_yield.size(); ++k) {
         const QuantumYield& yield = result.quantum_yield[k];
+        if (!std::isfinite(yield.value)) {
+            rows.push_back({std::to_string(k + 1), "unknown", "", ""});
+            continue;
+        }
         rows.push_back({std::to_string(k + 1), fmt::format("{:.4f}", yield.value),
                         fmt::format("{:.4f}", yield.low), fmt::format("{:.4f}", yield.high)});
     }

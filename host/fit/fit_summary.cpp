@@ -19,6 +19,8 @@ nlohmann::ordered_json fit_summary(const FitResult& result) {
                                    {"anti_stokes_energy", result.anti_stokes_energy},
                                    {"stop_reason", result.trace.stop_reason},
                                    {"smooth_nm", result.spacing_nm},
+                                   {"emission_knots_nm", result.emission_knots_nm},
+                                   {"excitation_knots_nm", result.excitation_knots_nm},
                                    {"noise", result.noise},
                                    {"noise_is_estimated", result.noise_is_estimated},
                                    {"reduced_chi_squared", result.reduced_chi_squared},

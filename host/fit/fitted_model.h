@@ -28,6 +28,9 @@ public:
     virtual FactorCurves curves(const Eigen::VectorXd& parameters) const = 0;
     /// Derivative of every entry (column-major order of `matrix`) by every parameter.
     virtual Eigen::MatrixXd entry_jacobian(const Eigen::VectorXd& parameters) const = 0;
+    /// Derivative by every parameter of a linear prior's residuals, in standard deviations; no
+    /// rows: there is none that counts.
+    virtual Eigen::MatrixXd prior_jacobian() const { return {}; }
     /// Numbers of a term that may be chosen at will: what one curve gives the other takes.
     virtual int free_units() const = 0;
 };

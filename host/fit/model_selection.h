@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <memory>
+#include <vector>
 
 namespace reradiant {
 
@@ -26,6 +27,7 @@ struct FittedCandidate {
     ModelFit fit;
     double criterion = std::numeric_limits<double>::infinity();
     double spacing_nm = 0.0;
+    std::vector<int> emission_knots, excitation_knots; ///< see FitResult
 };
 
 /// No fluorescence at all: what every model is compared with.

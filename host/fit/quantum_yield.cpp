@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 namespace reradiant {
 
 namespace {
 
 constexpr double normal_95 = 1.959963984540054;
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double largest_absorptance_error = 0.1;
 
 std::vector<Eigen::Index> telling_bands(const Eigen::MatrixXd& share, Eigen::Index term) {
@@ -41,8 +43,15 @@ std::vector<QuantumYield> quantum_yields(const EmittedPhotons& emitted,
             absorbed += mine * (known ? 1.0 - diagonal(i) : 1.0);
             variance += known ? std::pow(mine * diagonal_sigma(i), 2) : 0.0;
         }
-        if (!(photons > 0.0) || !(absorbed > 0.0)) {
+        if (!(photons > 0.0)) {
             yields.push_back({0.0, 0.0, 1.0});
+            continue;
+        }
+        if (!(absorbed > normal_95 * std::sqrt(variance))) {
+            warnings.push_back(fmt::format("quantum yield {} is unknown: the absorptance where the "
+                                           "term emits is lost in its error",
+                                           k + 1));
+            yields.push_back({unknown, unknown, unknown});
             continue;
         }
         const double absorptance_error = std::sqrt(variance) / absorbed;

@@ -71,29 +71,59 @@ std::vector<Matrix> block_weights(const BispectralData& data, bool& is_estimated
     return weights;
 }
 
-/// Adds what the uncertainty of the stack's numbers does to every entry, direction by direction.
-void add_stack_variance(const UnknownStack& unknown, const UnknownStackFit& fit,
-                        const BispectralData& data, const std::vector<Matrix>& weights,
-                        UncertainMatrix& bare) {
-    const auto inverted = [&](const Eigen::VectorXd& numbers) {
-        const StackResponse response = stack_response(unknown.stack(numbers), data);
-        return bare_matrix(under_the_stack(data, response, weights), response.internal_reflectance,
-                           data)
-            .value;
-    };
-    for (Eigen::Index k = 0; k < fit.root.cols(); ++k) {
-        const Eigen::VectorXd step = 1e-3 * fit.root.col(k);
-        const Matrix slope = (inverted(fit.numbers + step) - inverted(fit.numbers - step)) / 2e-3;
-        bare.variance += slope.cwiseAbs2();
-    }
+/// What no substrate sends upwards: known to be zero.
+void darken_impossible(const BispectralData& data, UncertainMatrix& under) {
+    for (int i = 0; i < data.excitation.count; ++i)
+        for (int o = 0; o < data.emission.count; ++o)
+            if (data.emission.centre_nm(o) < data.excitation.centre_nm(i) - 1e-6)
+                under.value(o, i) = under.variance(o, i) = 0.0;
 }
 
-void note_dark_bands(const BispectralData& data, std::vector<std::string>& notes) {
+/// The substrate under a stack with these numbers.
+class Inversion {
+public:
+    Inversion(const BispectralData& data, const std::vector<Matrix>& weights, bool anti_stokes)
+        : data_(data), weights_(weights), anti_stokes_(anti_stokes) {}
+
+    BareMatrix operator()(const LayerStack& stack) const {
+        const StackResponse response = stack_response(stack, data_);
+        UncertainMatrix under = under_the_stack(data_, response, weights_);
+        if (!anti_stokes_)
+            darken_impossible(data_, under);
+        return bare_matrix(under, response.internal_reflectance, data_);
+    }
+
+private:
+    const BispectralData& data_;
+    const std::vector<Matrix>& weights_;
+    bool anti_stokes_;
+};
+
+/// What the uncertainty of the stack's numbers does to every entry, direction by direction.
+std::vector<Matrix> stack_directions(const UnknownStack& unknown, const UnknownStackFit& fit,
+                                     const Inversion& inversion) {
+    std::vector<Matrix> directions;
+    for (Eigen::Index k = 0; k < fit.root.cols(); ++k) {
+        const Eigen::VectorXd step = 1e-3 * fit.root.col(k);
+        directions.push_back((inversion(unknown.stack(fit.numbers + step)).value -
+                              inversion(unknown.stack(fit.numbers - step)).value) /
+                             2e-3);
+    }
+    return directions;
+}
+
+void note_guesses(const BispectralData& data, const BareMatrix& bare,
+                  std::vector<std::string>& notes) {
     const WavelengthGrid grid = common_grid(data);
     if (data.emission.count < grid.count && data.emission.from_nm > data.excitation.from_nm)
         notes.push_back(fmt::format("emission below {} nm was not measured and is taken as dark in "
                                     "the interreflections",
                                     data.emission.from_nm));
+    if (bare.guessed > 0)
+        notes.push_back(fmt::format("the reflectance of {} bands was not measured: for the "
+                                    "interreflections it is that of the nearest band, and its "
+                                    "error may be anything",
+                                    bare.guessed));
 }
 
 } // namespace
@@ -114,18 +144,18 @@ UnknownLayers unknown_layers_from_names(const std::vector<std::string>& names) {
 }
 
 SubstrateData invert_stack(const BispectralData& data, const LayerStack& stack,
-                           const UnknownLayers& unknown) {
+                           const UnknownLayers& unknown, bool anti_stokes) {
     const bool is_bare = data.blocks.size() == 1 && !data.blocks.front().geometry;
     if (stack.layers.empty() && unknown.any())
         throw_input_error({data.file.string()},
                           "something of a stack is unknown, but there is none",
                           "give --stack, too");
     if (stack.layers.empty() && is_bare)
-        return {data, stack, {}, {}};
+        return {data, stack, {}, {}, false, {}};
     const BispectralData measured = with_geometries(data);
     bool is_estimated = true;
     const std::vector<Matrix> weights = block_weights(measured, is_estimated);
-    SubstrateData result{{}, stack, {}, {}};
+    SubstrateData result{measured, stack, {}, {}, is_estimated, {}};
     const UnknownStack numbers(stack, unknown);
     UnknownStackFit fit;
     if (unknown.any()) {
@@ -133,17 +163,14 @@ SubstrateData invert_stack(const BispectralData& data, const LayerStack& stack,
         result.stack = numbers.stack(fit.numbers);
         result.estimate = fit.estimate;
     }
-    const StackResponse response = stack_response(result.stack, measured);
-    UncertainMatrix bare = bare_matrix(under_the_stack(measured, response, weights),
-                                       response.internal_reflectance, measured);
+    const Inversion inversion(measured, weights, anti_stokes);
+    BareMatrix bare = inversion(result.stack);
     if (unknown.any())
-        add_stack_variance(numbers, fit, measured, weights, bare);
-    result.data = measured;
-    BispectralBlock block{std::nullopt, bare.value, bare.variance.cwiseSqrt()};
-    if (is_estimated)
-        block.sigma.setConstant(std::numeric_limits<double>::quiet_NaN());
-    result.data.blocks.assign(1, block);
-    note_dark_bands(measured, result.notes);
+        bare.errors.directions = stack_directions(numbers, fit, inversion);
+    const Matrix gaps = 0.0 * bare.value; // NaN where nothing was measured
+    result.data.blocks.assign(1, {std::nullopt, bare.value, bare.own_variance.cwiseSqrt() + gaps});
+    note_guesses(measured, bare, result.notes);
+    result.errors = std::move(bare.errors);
     return result;
 }
 

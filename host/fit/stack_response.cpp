@@ -42,6 +42,30 @@ Eigen::Index offset_in(const WavelengthGrid& common, const WavelengthGrid& grid)
     return static_cast<Eigen::Index>(std::lround((grid.from_nm - common.from_nm) / common.step_nm));
 }
 
+/// Fills the diagonal of B where it was not measured; returns in how many bands. A substrate of
+/// reflectance rho alone has B = rho / (1 - r rho).
+int guess_diagonal(const Eigen::VectorXd& r, const Eigen::VectorXd& measured, UncertainMatrix& b) {
+    constexpr double variance_of_anything = 1.0 / 12.0; // uniform between 0 and 1
+    std::vector<double> bands, reflectances;
+    for (Eigen::Index k = 0; k < r.size(); ++k)
+        if (measured(k) > 0.0) {
+            bands.push_back(static_cast<double>(k));
+            const double value = std::max(0.0, b.value(k, k));
+            reflectances.push_back(std::min(1.0, value / (1.0 + r(k) * value)));
+        }
+    if (bands.empty())
+        return 0;
+    const Spectrum reflectance = Spectrum::table(bands, reflectances);
+    for (Eigen::Index k = 0; k < r.size(); ++k) {
+        if (measured(k) > 0.0)
+            continue;
+        const double rho = reflectance(static_cast<double>(k)), gain = 1.0 / (1.0 - r(k) * rho);
+        b.value(k, k) = rho * gain;
+        b.variance(k, k) = variance_of_anything * std::pow(gain, 4);
+    }
+    return static_cast<int>(r.size()) - static_cast<int>(bands.size());
+}
+
 } // namespace
 
 WavelengthGrid common_grid(const BispectralData& data) {
@@ -102,24 +126,34 @@ UncertainMatrix under_the_stack(const BispectralData& data, const StackResponse&
     return under;
 }
 
-UncertainMatrix bare_matrix(const UncertainMatrix& under, const Eigen::VectorXd& r,
-                            const BispectralData& data) {
+BareMatrix bare_matrix(const UncertainMatrix& under, const Eigen::VectorXd& r,
+                       const BispectralData& data) {
     const WavelengthGrid grid = common_grid(data);
     const Eigen::Index o = offset_in(grid, data.emission), i = offset_in(grid, data.excitation);
     const Eigen::Index rows = under.value.rows(), columns = under.value.cols();
-    Matrix full = Matrix::Zero(grid.count, grid.count), variance = full;
+    UncertainMatrix full{Matrix::Zero(grid.count, grid.count),
+                         Matrix::Zero(grid.count, grid.count)};
+    Matrix measured = full.value;
     const auto known = (under.value.array() == under.value.array());
-    full.block(o, i, rows, columns) = known.select(under.value, 0.0);
-    variance.block(o, i, rows, columns) = known.select(under.variance, 0.0);
+    full.value.block(o, i, rows, columns) = known.select(under.value, 0.0);
+    full.variance.block(o, i, rows, columns) = known.select(under.variance, 0.0);
+    measured.block(o, i, rows, columns) = known.cast<double>();
+    BareMatrix bare;
+    bare.guessed = guess_diagonal(r, measured.diagonal(), full);
     const Matrix identity = Matrix::Identity(grid.count, grid.count);
-    const Matrix system = identity + r.asDiagonal() * full;
-    const Matrix bare = system.transpose().partialPivLu().solve(full.transpose()).transpose();
-    const Matrix left = identity - bare * r.asDiagonal();
-    const Matrix right = identity - r.asDiagonal() * bare;
-    const Matrix spread = left.cwiseAbs2() * variance * right.cwiseAbs2();
+    const Matrix system = identity + r.asDiagonal() * full.value;
+    const Matrix whole =
+        system.transpose().partialPivLu().solve(full.value.transpose()).transpose();
     const Matrix gaps = Matrix::Constant(rows, columns, nan_value);
-    return {known.select(bare.block(o, i, rows, columns), gaps),
-            known.select(spread.block(o, i, rows, columns), gaps)};
+    bare.value = known.select(whole.block(o, i, rows, columns), gaps);
+    bare.errors.left = (identity - whole * r.asDiagonal()).middleRows(o, rows);
+    bare.errors.right = (identity - r.asDiagonal() * whole).middleCols(i, columns);
+    bare.errors.variance = full.variance;
+    bare.own_variance =
+        bare.errors.left.middleCols(o, rows).diagonal().cwiseAbs2().asDiagonal() *
+        full.variance.block(o, i, rows, columns) *
+        bare.errors.right.middleRows(i, columns).diagonal().cwiseAbs2().asDiagonal();
+    return bare;
 }
 
 } // namespace reradiant

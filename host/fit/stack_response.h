@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/fit/bispectral_data.h"
+#include "host/fit/shared_errors.h"
 #include "host/layers/stack.h"
 
 #include <Eigen/Core>
@@ -31,9 +32,21 @@ struct UncertainMatrix {
 UncertainMatrix under_the_stack(const BispectralData& data, const StackResponse& response,
                                 const std::vector<Eigen::MatrixXd>& weight);
 
-/// M = B (I + diag(r) B)^-1 on the data's grids with first-order variances (dM = (I - M R) dB (I -
-/// R M)). Entries that were not measured count as zero within and stay NaN.
-UncertainMatrix bare_matrix(const UncertainMatrix& under, const Eigen::VectorXd& r,
-                            const BispectralData& data);
+/// A matrix and its errors.
+struct BareMatrix {
+    Eigen::MatrixXd value; ///< (emission, excitation), NaN where it was not measured
+    /// What an entry's own error of B makes of it. The rest is shared: it moves rows and columns as
+    /// wholes, which sums of products of curves follow exactly, so that it must not weaken weights.
+    Eigen::MatrixXd own_variance;
+    SharedErrors errors; ///< all of it, without directions
+    int guessed = 0;     ///< bands whose reflectance had to be guessed
+};
+
+/// M = B (I + diag(r) B)^-1 on the data's grids with first-order errors (dM = (I - M R) dB (I -
+/// R M)). Entries that were not measured count as zero within and stay NaN, but those of the
+/// diagonal as the reflectance of the nearest band that has one, which might be anything from 0 to
+/// 1: how much of the light comes back a second time depends on it.
+BareMatrix bare_matrix(const UncertainMatrix& under, const Eigen::VectorXd& r,
+                       const BispectralData& data);
 
 } // namespace reradiant

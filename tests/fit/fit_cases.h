@@ -4,9 +4,11 @@
 #include "host/fit/fit.h"
 #include "host/spectral/reradiation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace reradiant {
@@ -85,6 +87,13 @@ inline double stokes_rmse(const ReradiationMatrix& a, const ReradiationMatrix& b
 
 inline double stokes_peak(const ReradiationMatrix& matrix) {
     return matrix.values.cwiseProduct(stokes_entries(matrix)).maxCoeff();
+}
+
+/// Whether one of the lines holds these words.
+inline bool says(const std::vector<std::string>& lines, const std::string& words) {
+    return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
+        return line.find(words) != std::string::npos;
+    });
 }
 
 /// Share of entries with emission > excitation whose 95 % band holds the truth.

@@ -3,7 +3,6 @@
 #include "host/fit/prepared_target.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"
-#include "tests/fit/not_reached.h"
 
 #include <gtest/gtest.h>
 
@@ -99,7 +98,6 @@ TEST_F(DataTest, BadInputIsRefusedAtItsPlace) {
 }
 
 TEST(Target, NoiseIsSeenThroughTheSignal) {
-    NOT_REACHED_YET("noise of 1e-4 of the peak is estimated 1.6 times too large");
     const ReradiationMatrix truth = true_matrix(two_fluorophores());
     for (const double noise : {1e-4, 1e-3, 1e-2}) {
         const BispectralData data = noisy_data(truth, noise * stokes_peak(truth), false, 3);
@@ -108,6 +106,18 @@ TEST(Target, NoiseIsSeenThroughTheSignal) {
         // About 900 correlated differences know the scale to 10 %; curvature of the signal adds.
         EXPECT_NEAR(prepared.noise / (noise * stokes_peak(truth)), 1.0, 0.3) << noise;
     }
+}
+
+TEST(Target, NegativesAreNoiseUnlessTheDarkSignalIsOff) {
+    const ReradiationMatrix truth = true_matrix(two_fluorophores());
+    BispectralData data = noisy_data(truth, 0.01 * stokes_peak(truth), false, 3);
+    const PreparedTarget noisy = prepare_target(data, {false, 10.0});
+    EXPECT_LT(noisy.target.value.minCoeff(), 0.0);
+    EXPECT_FALSE(says(noisy.notes, "negative"));
+    data.blocks[0].value.row(30).array() -= 0.1 * stokes_peak(truth); // 49 bands at 680 nm
+    const PreparedTarget off = prepare_target(data, {false, 10.0});
+    EXPECT_EQ(off.target.value.minCoeff(), 0.0);
+    EXPECT_TRUE(says(off.notes, "negative"));
 }
 
 TEST(Target, SpillAndDiagonalAreNotUsed) {

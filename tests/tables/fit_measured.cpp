@@ -24,14 +24,17 @@ struct Setting {
     FitModel model;
     std::optional<int> rank;
     std::optional<double> smooth_nm;
+    std::optional<std::size_t> bytes = {};
     int starts = 4;
 };
 
 std::vector<Setting> settings() {
     return {{"factors, rank 1", FitModel::Factors, 1, 0.0},
-            {"factors, rank 1, 20 nm", FitModel::Factors, 1, 20.0},
+            {"factors, rank 1, 200 bytes", FitModel::Factors, 1, {}, 200},
+            {"factors, rank 2", FitModel::Factors, 2, 0.0},
             {"factors, rank 3", FitModel::Factors, 3, 0.0},
-            {"factors, rank 3, one start", FitModel::Factors, 3, 0.0, 1},
+            {"factors, rank 3, one start", FitModel::Factors, 3, 0.0, {}, 1},
+            {"factors, rank 3, 600 bytes", FitModel::Factors, 3, {}, 600},
             {"factors, by evidence", FitModel::Factors, {}, {}},
             {"gaussians, 12", FitModel::Gaussians, 12, {}},
             {"matrix", FitModel::Matrix, {}, {}}};
@@ -50,6 +53,7 @@ Row fit_one(const std::filesystem::path& file, const Setting& setting) {
     request.rank = setting.rank;
     request.smooth_nm = setting.smooth_nm;
     request.starts = setting.starts;
+    request.most_bytes = setting.bytes;
     const BispectralData data = read_bispectral_data(file);
     const std::clock_t begin = std::clock();
     FitResult result = fit_reradiation(data, request);
