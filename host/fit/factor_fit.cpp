@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -28,6 +29,12 @@ constexpr std::size_t fewest_knots = 4;
 struct CurveBases {
     SmoothBasis emission, excitation;
 };
+
+/// One number a term is only a choice of unit; numbers at zero were not needed.
+double needed_numbers(const FittedCandidate& candidate) {
+    return static_cast<double>((candidate.fit.parameters.array() > 0.0).count()) -
+           candidate.model->terms();
+}
 
 class FactorFitter {
 public:
@@ -109,14 +116,13 @@ private:
             bridge_hidden_bands(target_, curves);
             candidate.fit.parameters = model->parameters(curves.emission, curves.excitation);
         }
-        // One number a term is only a choice of unit; numbers at zero were not needed.
-        const Eigen::Index numbers = (candidate.fit.parameters.array() > 0.0).count() - rank;
+        candidate.model = std::move(model);
+        const auto numbers = static_cast<Eigen::Index>(needed_numbers(candidate));
         candidate.criterion = information_criterion(candidate.fit.chi_squared, numbers,
                                                     target_.used_count(), evidence_);
         candidate.spacing_nm = emission.spacing_nm;
         candidate.emission_knots = emission.knots;
         candidate.excitation_knots = excitation.knots;
-        candidate.model = std::move(model);
         return candidate;
     }
 
@@ -124,6 +130,27 @@ private:
     const FitSettings& settings_;
     Evidence evidence_;
     Clock::time_point begin_;
+};
+
+/// Whether smooth curves lose no more than fewer numbers must. Schwarz's criterion would take
+/// splines that bend less than the truth, whose bands then hold 80 % of it instead of 95.
+class Smoothing {
+public:
+    Smoothing(const FittedCandidate& rough, Eigen::Index data, Evidence evidence)
+        : chi_squared_(rough.fit.chi_squared), numbers_(needed_numbers(rough)) {
+        const double freedom = std::max(1.0, static_cast<double>(data) - numbers_);
+        variance_ = evidence == Evidence::KnownNoise ? 1.0 : chi_squared_ / freedom;
+    }
+    /// Chi squared may rise as one of that many degrees of freedom: by their number, give or take
+    /// one standard deviation.
+    bool may_be(const FittedCandidate& smooth) const {
+        const double fewer = std::max(0.0, numbers_ - needed_numbers(smooth));
+        return smooth.fit.chi_squared - chi_squared_ <=
+               variance_ * (fewer + std::sqrt(2.0 * fewer));
+    }
+
+private:
+    double chi_squared_, numbers_, variance_ = 1.0;
 };
 
 FactorCurves curves_of(const FittedCandidate& candidate) {
@@ -156,10 +183,11 @@ FittedCandidate fit_factors(const FitTarget& target, const FitSettings& settings
     if (!best.model || settings.smooth_nm || settings.most_bytes)
         return fitter.within(most_bytes, std::move(best));
     const FactorCurves start = curves_of(best);
+    const Smoothing smoothing(best, target.used_count(), evidence);
     for (const double steps : spacings_in_steps) {
         FittedCandidate smooth = fitter.fit(
             best.model->terms(), fitter.splines(steps * target.emission.step_nm), {start});
-        if (smooth.criterion < best.criterion && smooth.fit.trace.converged)
+        if (smooth.fit.trace.converged && smoothing.may_be(smooth))
             best = std::move(smooth);
     }
     return best;
