@@ -1,5 +1,6 @@
 // What a scene does not need costs nothing, and edits of numbers build nothing.
 #include "host/device/program.h"
+#include "host/render/render_features.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>
