@@ -122,8 +122,9 @@ void expect_sound(const SceneTables& tables, RandomMaterials& random) {
         ASSERT_GE(value[0], 0.0f) << where;
         ASSERT_GE(value[1], 0.0f) << where;
         ASSERT_NEAR(value[4], 1.0f, 1e-5f) << where;
-        if (value[5] == 0.0f && value[2] > 0.0f)
+        if (value[5] == 0.0f && value[2] > 0.0f) {
             ASSERT_GT(value[3], 0.0f) << "a direction of probability 0, " << where;
+        }
     }
 }
 
