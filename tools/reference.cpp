@@ -65,7 +65,7 @@ substrate = { type = "conductor", ior = 0.2, kappa = 3, alpha = 0.1 }
 light = [{ type = "environment", file = "grey.png", rotation_deg = 0, radiance = { illuminant = "D65" } }]
 material = [
   { name = "a", preset = "red-lacquer" },
-  { name = "b", substrate = { type = "oren-nayar", sigma = 0.3, reflectance = { file = "A.csv" } } },
+  { name = "b", substrate = { type = "oren-nayar", sigma = 0.3, reflectance = { file = "grey.csv" } } },
   { name = "c", substrate = { type = "lambert", reradiation = { file = "synthetic-orange.csv" } } },
   { name = "d", substrate = { type = "lambert", reradiation = { reflectance = 0.1, fluorophores = [{ excitation = 0.1, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9 }] } } },
   { name = "e", substrate = { type = "lambert", thickness = 1, backing = 0.5, pigments = [{ absorption = 1, scattering = 1, concentration = 1 }], dyes = [{ absorption = { gaussian_nm = 450, sigma_nm = 20 }, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9, concentration = 1 }] } },
@@ -79,6 +79,7 @@ public:
         : folder(fs::temp_directory_path() / fmt::format("reradiant-reference-{}", ::getpid())) {
         fs::create_directories(folder);
         std::ofstream(folder / "mesh.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        std::ofstream(folder / "grey.csv") << "nm,value\n380,0.5\n780,0.5\n";
         write_png(folder / "grey.png", 2, 2, std::vector<std::uint8_t>(12, 128), true);
     }
     ~SampleFiles() {
