@@ -143,7 +143,8 @@ std::string format_reference() {
         throw std::logic_error(fmt::format("no sample has the type {}", fmt::join(missing, ", ")));
     std::string text = introduction;
     for (const KeyReference::Table& table : reference.tables())
-        if (table.name != "a scene" && table.name != "a material file")
+        if (table.name != "a scene" && table.name != "a material file" &&
+            !table.name.starts_with("[material]")) // as [[material]]
             text += markdown_of(table);
     return text;
 }
