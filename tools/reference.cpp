@@ -45,9 +45,9 @@ shape = [
   { type = "heightfield", file = "grey.png", center = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [0, 0, 1], height = 1, material = "a" }]
 texture = [
   { name = "n", type = "noise", space = "world", size = 1, levels = 2, low = 0, high = 1, seed = 0, tilt_deg = 5, octaves = 1, sharpness = 1 },
-  { name = "v", type = "voronoi", share = 0.5, seed = 1, tilt_deg = 0 },
-  { name = "c", type = "checker" },
-  { name = "i", type = "image", file = "grey.png", normal_map = false, linear = true }]
+  { name = "v", type = "voronoi", space = "world", share = 0.5, seed = 1, tilt_deg = 0 },
+  { name = "c", type = "checker", space = "world" },
+  { name = "i", type = "image", space = "uv", file = "grey.png", normal_map = false, linear = true }]
 [[material]]
 name = "a"
 model = "auto"
@@ -55,7 +55,8 @@ normal = { texture = "n" }
 mix = { with = "b", weight = { texture = "c" } }
 layer = [
   { ior = 1.5, roughness_deg = 5, distribution = "ggx", scattering = "multiple", thickness = { texture = "c", low = 0, high = 1 }, absorption = 0, scattering_coefficient = 0, anisotropy = 0, film = { thickness_nm = 300, ior = 1.4 } },
-  { ior = 1.5, alpha = 0.1, flakes = { coverage = 0.1, metal = "silver" } }]
+  { ior = 1.5, alpha = 0.1, flakes = { coverage = 0.1, metal = "silver", alpha = 0.1, distribution = "ggx", scattering = "single", film = { thickness_nm = 300, ior = 1.4 } } },
+  { ior = 1.5, flakes = { coverage = 0.1, ior = 0.2, kappa = 3, roughness_deg = 5 } }]
 substrate = { type = "lambert", reflectance = { rgb = [0.5, 0.5, 0.5] } }
 [[material]]
 name = "b"
@@ -65,11 +66,13 @@ substrate = { type = "conductor", ior = 0.2, kappa = 3, alpha = 0.1 }
 light = [{ type = "environment", file = "grey.png", rotation_deg = 0, radiance = { illuminant = "D65" } }]
 material = [
   { name = "a", preset = "red-lacquer" },
-  { name = "b", substrate = { type = "oren-nayar", sigma = 0.3, reflectance = { file = "A.csv" } } },
+  { name = "b", substrate = { type = "oren-nayar", sigma = 0.3, reflectance = { file = "grey.csv" } } },
   { name = "c", substrate = { type = "lambert", reradiation = { file = "synthetic-orange.csv" } } },
   { name = "d", substrate = { type = "lambert", reradiation = { reflectance = 0.1, fluorophores = [{ excitation = 0.1, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9 }] } } },
   { name = "e", substrate = { type = "lambert", thickness = 1, backing = 0.5, pigments = [{ absorption = 1, scattering = 1, concentration = 1 }], dyes = [{ absorption = { gaussian_nm = 450, sigma_nm = 20 }, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9, concentration = 1 }] } },
-  { name = "f", substrate = { type = "conductor", metal = "gold", roughness_deg = 5, distribution = "ggx", scattering = "single", film = { thickness_nm = 300, ior = 1.4 } } }]
+  { name = "f", substrate = { type = "conductor", metal = "gold", roughness_deg = 5, distribution = "ggx", scattering = "single", film = { thickness_nm = 300, ior = 1.4 } } },
+  { name = "g", substrate = { type = "oren-nayar", sigma = 0.3, thickness = 1, backing = 0.5, pigments = [{ absorption = 1, scattering = 1, concentration = 1 }], dyes = [{ absorption = { gaussian_nm = 450, sigma_nm = 20 }, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9, concentration = 1 }] } },
+  { name = "h", substrate = { type = "oren-nayar", sigma = 0.3, reradiation = { file = "synthetic-orange.csv" } } }]
 )"};
 
 /// A folder with the files that the samples name, for as long as this lives.
@@ -79,6 +82,7 @@ public:
         : folder(fs::temp_directory_path() / fmt::format("reradiant-reference-{}", ::getpid())) {
         fs::create_directories(folder);
         std::ofstream(folder / "mesh.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        std::ofstream(folder / "grey.csv") << "nm,value\n380,0.5\n780,0.5\n";
         write_png(folder / "grey.png", 2, 2, std::vector<std::uint8_t>(12, 128), true);
     }
     ~SampleFiles() {
@@ -139,7 +143,8 @@ std::string format_reference() {
         throw std::logic_error(fmt::format("no sample has the type {}", fmt::join(missing, ", ")));
     std::string text = introduction;
     for (const KeyReference::Table& table : reference.tables())
-        if (table.name != "a scene" && table.name != "a material file")
+        if (table.name != "a scene" && table.name != "a material file" &&
+            !table.name.starts_with("[material]")) // as [[material]]
             text += markdown_of(table);
     return text;
 }

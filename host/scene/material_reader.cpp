@@ -160,6 +160,7 @@ MaterialReading read_material(const toml::table& table, const std::string& file,
     if (place == MaterialPlace::Scene && reader.text("name").empty())
         reader.fail("name", "the name is empty", "give a name for shapes to refer to");
     MaterialReading reading;
+    reader.describe("preset", "string"); // read below by a reader of its own
     if (reader.has("preset")) {
         const TableReader named(table, file, "a material with a preset", {"name", "preset"});
         if (place == MaterialPlace::PresetFile)
@@ -173,6 +174,7 @@ MaterialReading read_material(const toml::table& table, const std::string& file,
         return reading;
     }
     read_variants(reader, reading, state);
+    reader.describe("normal", "texture");
     if (reader.has("normal"))
         read_normal(reader, reading, state);
     if (reader.has("mix"))

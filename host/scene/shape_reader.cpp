@@ -35,6 +35,7 @@ DiskShape read_disk(const TableReader& reader) {
 /// The upper three rows of a matrix, row after row: moves a mesh, and its normals by the inverse
 /// transpose.
 void transform_mesh(const TableReader& reader, MeshShape& mesh) {
+    reader.describe("transform", "array of 12 numbers");
     const auto values =
         numbers_at(reader.required("transform"), reader.file(), reader.position_of_key("transform"),
                    "transform", 12, NumberRange::within(-MAX_COORDINATE, MAX_COORDINATE));

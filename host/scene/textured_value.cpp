@@ -72,7 +72,10 @@ TextureReference read_texture_reference(const toml::node& node, const std::strin
                                         const std::string& name, LoadState& state) {
     const toml::table& table = *node.as_table();
     const TableReader reader(table, file, fmt::format("the texture reference {}", name),
-                             REFERENCE_KEYS);
+                             REFERENCE_KEYS, "a texture reference");
+    reader.describe("texture", "string");
+    reader.describe("low", "number or SPECTRUM", "that of the texture");
+    reader.describe("high", "number or SPECTRUM", "that of the texture");
     TextureScope& scope = scope_of(state, reader.position_of_key("texture"), name);
     if (scope.inside_reference)
         reader.fail("texture", "low and high of a texture cannot be textures",
