@@ -8,13 +8,13 @@
 
 __kernel void generate(__global RayRecord* rays, __global PathState* paths, CameraRecord camera,
                        uint first_pixel, uint first_sample, uint samples, uint path_count,
-                       uint phases, uint seed) {
+                       uint phases, uint sequence_blocks, uint seed) {
     const uint path = (uint)get_global_id(0);
     if (path >= path_count)
         return;
     const uint pixel = first_pixel + path / samples;
     const uint sample = first_sample + path % samples;
-    const Random4 u = sequence_4(pixel, sample, 0u, seed);
+    const Random4 u = path_numbers(pixel, sample, 0u, sequence_blocks, seed);
     const CameraRay camera_space = camera_ray(camera, (real)(pixel % camera.width) + u.b,
                                               (real)(pixel / camera.width) + u.c, u.a, u.d);
     RayRecord ray;

@@ -59,6 +59,14 @@ DEVICE_FUNCTION Random4 sequence_4(uint pixel, uint sample, uint dimension, uint
     return r;
 }
 
+/// The numbers of a dimension block of a path: from the sequence in the first `sequence_blocks`,
+/// else independent.
+DEVICE_FUNCTION Random4 path_numbers(uint pixel, uint sample, uint dimension, uint sequence_blocks,
+                                     uint seed) {
+    return dimension < sequence_blocks ? sequence_4(pixel, sample, dimension, seed)
+                                       : random_4(pixel, sample, dimension, seed);
+}
+
 KERNELS_END
 
 #endif

@@ -34,15 +34,6 @@ typedef struct {
     uint environment; ///< light of a constant environment, or NO_INDEX
 } ShadeScene;
 
-/// Dimension blocks of a path that come from the sequence: the camera's, and light and direction at
-/// its first vertices. Later ones are smoothed by those before them and gain nothing measurable.
-#define SEQUENCE_DIMENSIONS 7u
-
-Random4 path_numbers(PathState path, uint dimension, uint seed) {
-    return dimension < SEQUENCE_DIMENSIONS ? sequence_4(path.pixel, path.sample, dimension, seed)
-                                           : random_4(path.pixel, path.sample, dimension, seed);
-}
-
 /// Origin moved off the surface to the side of `direction`, beyond the position's error bound
 /// (after Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th ed., section 6.8.6).
 Vec3 offset_origin(HitRecord hit, Vec3 direction) {
@@ -391,7 +382,7 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
                     __global uint* walk_chunks_used, __global WalkVertexRecord* walk_vertices,
                     EnvironmentRecord image, uint walk_capacity, uint path_count, uint capacity,
                     uint depth, uint max_depth, uint min_depth, uint light_count, uint environment,
-                    uint seed) {
+                    uint sequence_blocks, uint seed) {
     const uint path = (uint)get_global_id(0);
     if (path >= path_count)
         return;
@@ -439,8 +430,10 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
     }
 #endif
 
-    const Random4 u_light = path_numbers(state, 2u * depth + 1u, seed);
-    const Random4 u = path_numbers(state, 2u * depth + 2u, seed);
+    const Random4 u_light =
+        path_numbers(state.pixel, state.sample, 2u * depth + 1u, sequence_blocks, seed);
+    const Random4 u =
+        path_numbers(state.pixel, state.sample, 2u * depth + 2u, sequence_blocks, seed);
     state.vertex_count = depth + 1u;
 #if FEATURE_WALK
     if (stack.record.walk != NO_INDEX) {

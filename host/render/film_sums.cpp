@@ -245,9 +245,11 @@ SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int w
             image.variance_y[pixel] = static_cast<float>(luminance_variance(film, pixel, n));
             halves.read(pixel, sums, n, samples);
         });
-    scale_variances(image.variance_y, halves.y, width, height, 1);
-    scale_variances(image.variance_bands, halves.by_band, width, height,
-                    layout.band_variance ? count : 0);
+    if (!layout.independent_samples) {
+        scale_variances(image.variance_y, halves.y, width, height, 1);
+        scale_variances(image.variance_bands, halves.by_band, width, height,
+                        layout.band_variance ? count : 0);
+    }
     return image;
 }
 

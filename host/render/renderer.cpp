@@ -62,6 +62,13 @@ SceneTables prepare_tables(const Scene& scene, const WavelengthPlan& plan,
     return tables;
 }
 
+/// The camera's numbers, and those for light and direction at the first three vertices, come from
+/// the sequence: later ones are smoothed by those before them. Variances per band are those of
+/// independent samples, so that parts of a render can be put together.
+std::uint32_t sequence_blocks(const RenderOptions& options) {
+    return options.band_variance ? 0 : 7;
+}
+
 /// Doubling passes: the first ones show and estimate early, later ones cost little to stop, and
 /// take a sixteenth of what is done, so that their number stays small. None is longer than the time
 /// between two checkpoints.
@@ -240,12 +247,14 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
     Wavefront wavefront(device, geometry, tables, result.plan,
                         {static_cast<std::uint32_t>(scene.integrator.max_depth),
                          static_cast<std::uint32_t>(scene.integrator.min_depth), options.seed,
-                         options.batch_paths, options.threads, options.on_rays},
+                         options.batch_paths, options.threads, sequence_blocks(options),
+                         options.on_rays},
                         result.build);
     result.setup_seconds = seconds_since(start) - result.build.seconds;
 
-    const FilmLayout layout =
+    FilmLayout layout =
         film_layout(result.plan, tables.features.band_variance, tables.features.scatter);
+    layout.independent_samples = sequence_blocks(options) == 0;
     Checkpoints checkpoints(scene, device, options);
     RenderProgress state = checkpoints.resume(wavefront, result);
     const double seconds_before = state.seconds;

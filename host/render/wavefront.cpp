@@ -150,7 +150,7 @@ bool Wavefront::walks_fit() {
 void Wavefront::generate(const Batch& batch) {
     generate_.bind(rays_.buffer(), paths_.buffer(), scene_.camera, batch.first_pixel,
                    batch.first_sample, batch.samples, batch.paths(),
-                   static_cast<std::uint32_t>(phases_), settings_.seed);
+                   static_cast<std::uint32_t>(phases_), settings_.sequence_blocks, settings_.seed);
     generate_.launch(device_, batch.paths());
     wait_for_kernels(statistics_.generate_seconds);
 }
@@ -178,7 +178,7 @@ void Wavefront::shade(const Batch& batch, std::uint32_t depth) {
                 walk_chunks_.buffer(), walk_chunks_used_.buffer(), walk_vertices_.buffer(),
                 scene_.image, static_cast<std::uint32_t>(walk_chunks_.size()), batch.paths(),
                 capacity_, depth, settings_.max_depth, settings_.min_depth, scene_.sampled_lights,
-                scene_.environment, settings_.seed);
+                scene_.environment, settings_.sequence_blocks, settings_.seed);
     shade_.launch(device_, batch.paths());
     wait_for_kernels(statistics_.shade_seconds);
 }

@@ -34,6 +34,7 @@ struct WavefrontSettings {
     std::uint32_t seed = 0;
     std::size_t batch_paths = 1u << 15;
     int threads = 0;
+    std::uint32_t sequence_blocks = 0; ///< of a path that come from the sequence (sequence.h)
     RaySink on_rays = {};
 };
 

@@ -94,7 +94,7 @@ TEST_F(SynthAndColour, BadInputIsExitTwoAtItsPlace) {
     expect_failure(2, "colour bad.csv", "bad.csv:3:1: ");
     const std::string orange = "colour " + matrices + "synthetic-orange.csv ";
     expect_failure(2, orange + "--illuminant D66", "there is no illuminant 'D66'");
-    expect_failure(2, orange + "--illuminant A --polygons " + polygons, "en-iso-20471.csv:7:1: ");
+    expect_failure(2, orange + "--illuminant A --polygons " + polygons, "en-iso-20471.csv:9:1: ");
     expect_failure(2, orange + "--against missing.csv", "missing.csv: ");
 }
 
