@@ -1,5 +1,7 @@
 // layer_stack's sample, pdf and values on the device, over tables of random materials: nothing but
 // finite numbers, none negative, no direction that its own pdf calls impossible.
+#include "host/device/buffer.h"
+#include "host/device/program.h"
 #include "host/render/scene_tables.h"
 #include "tests/full_run.h"
 #include "tests/render/random_materials.h"
