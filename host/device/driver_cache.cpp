@@ -2,11 +2,13 @@
 
 #include "host/paths.h"
 
+#include <spdlog/spdlog.h>
+
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
-#include <fcntl.h>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <unistd.h>
 
@@ -16,38 +18,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int crash_signals[] = {SIGSEGV, SIGBUS, SIGILL, SIGABRT};
+const std::string mark_prefix = "used-by-";
 
-// A signal handler may neither allocate nor lock: what it needs is laid out before.
-char marker_file[4096];
-char crash_message[8192];
-
-void on_crash(int signal) {
-    std::signal(signal, SIG_DFL);
-    const int file = ::open(marker_file, O_CREAT | O_WRONLY, 0644);
-    if (file >= 0)
-        ::close(file);
-    // nothing can be done about a failure to say so
-    [[maybe_unused]] const auto written =
-        ::write(STDERR_FILENO, crash_message, std::strlen(crash_message));
-    std::raise(signal);
+bool is_running(const std::string& process) {
+    const long id = std::strtol(process.c_str(), nullptr, 10);
+    return id > 0 && (::kill(static_cast<pid_t>(id), 0) == 0 || errno == EPERM);
 }
 
-void watch_for_crashes(const fs::path& folder) {
-    const std::string marker = (folder / "discard").string();
-    const std::string message =
-        "reradiant: crashed, perhaps by a damaged kernel in the driver's cache; " +
-        folder.string() + " will be discarded at the next start: run the command again\n";
-    if (marker.size() >= sizeof marker_file || message.size() >= sizeof crash_message)
-        return;
-    std::strcpy(marker_file, marker.c_str());
-    std::strcpy(crash_message, message.c_str());
-    for (const int signal : crash_signals) {
-        struct sigaction present {};
-        // a sanitizer's or a debugger's own handler says more
-        if (::sigaction(signal, nullptr, &present) == 0 && present.sa_handler == SIG_DFL)
-            std::signal(signal, on_crash);
+/// What marks in the cache tell of the processes that used it.
+struct Users {
+    bool some_died = false, some_run = false;
+};
+Users users_of(const fs::path& folder) {
+    Users users;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (name.rfind(mark_prefix, 0) == 0)
+            (is_running(name.substr(mark_prefix.size())) ? users.some_run : users.some_died) = true;
     }
+    return users;
 }
 
 bool is_usable(const fs::path& folder) {
@@ -63,6 +53,21 @@ void discard(const fs::path& folder) {
     away += "-discarded-" + std::to_string(::getpid());
     fs::rename(folder, away, ignored);
     fs::remove_all(away, ignored);
+    spdlog::info("the last program that used {} died: kernels are built anew, in case one of them "
+                 "is damaged",
+                 folder.string());
+}
+
+/// The mark of this process; it goes when the process ends by itself.
+fs::path own_mark;
+
+void mark(const fs::path& folder) {
+    own_mark = folder / (mark_prefix + std::to_string(::getpid()));
+    std::ofstream{own_mark};
+    std::atexit([] {
+        std::error_code ignored;
+        fs::remove(own_mark, ignored);
+    });
 }
 
 } // namespace
@@ -71,13 +76,14 @@ void prepare_driver_cache() {
     const std::string temporary = "reradiant-" + std::to_string(::getuid());
     for (const fs::path& folder :
          {cache_directory() / "pocl", fs::temp_directory_path() / temporary / "pocl"}) {
-        std::error_code ignored;
-        if (fs::exists(folder / "discard", ignored))
+        const Users users = users_of(folder);
+        if (users.some_died && !users.some_run)
             discard(folder);
         if (!is_usable(folder))
             continue;
         ::setenv("POCL_CACHE_DIR", folder.c_str(), 0); // what the user chose stays
-        watch_for_crashes(folder);
+        if (own_mark.empty())
+            mark(folder);
         return;
     }
 }

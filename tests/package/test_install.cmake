@@ -14,8 +14,7 @@ expect("${said}" "T 0.960000, r 0.596346\nXYZ [0-9.]+ [0-9.]+ [0-9.]+")
 
 file(GLOB_RECURSE description ${prefix}/*/reradiant.pc)
 get_filename_component(folder ${description} DIRECTORY)
-# The file names the configured prefix; a moved one is said so to pkg-config.
-run(flags pkg-config --define-variable=prefix=${prefix} --with-path=${folder} --cflags --libs reradiant)
+run(flags pkg-config --with-path=${folder} --cflags --libs reradiant)
 separate_arguments(flags UNIX_COMMAND "${flags}")
 get_filename_component(library ${folder} DIRECTORY)
 run(said c++ ${example}/main.cpp -o ${WORK}/by-pkg-config ${flags} -Wl,-rpath,${library})

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using CheckCommand = ProgramTest;
 using BadDevice = ProgramTest;
 
-const std::string quick = "check --only fresnel --samples 1000 ";
+const std::string quick = "check --only fresnel --samples 100000 ";
 const std::string tiny_render = "render scene.toml -o out.exr --spp 1 ";
 
 TEST_F(CheckCommand, ReportsEveryFunctionAndEndsWithZero) {
@@ -110,9 +110,8 @@ TEST_F(BadDevice, Case40DamagedDriverCacheIsDiscardedAfterItCrashed) {
             const ProgramResult first = run(tiny_render, own_cache);
             if (first.exit_code == 0)
                 continue; // the driver noticed
-            EXPECT_NE(first.errors.find("run the command again"), std::string::npos)
-                << first.errors;
-            EXPECT_EQ(run(tiny_render, own_cache).exit_code, 0) << ending << ' ' << kept;
+            const ProgramResult second = run(tiny_render, own_cache);
+            EXPECT_EQ(second.exit_code, 0) << ending << ' ' << kept << ": " << second.errors;
         }
 }
 

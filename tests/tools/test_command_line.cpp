@@ -8,12 +8,12 @@ using CommandLine = ProgramTest;
 
 const char* const commands[] = {"render",   "measure",  "synth",    "fit",     "colour",
                                 "study",    "converge", "classify", "compare", "merge",
-                                "validate", "info",     "convert",  "devices"};
+                                "validate", "info",     "convert",  "check",   "devices"};
 
 } // namespace
 
 TEST_F(CommandLine, UnknownOrMissingCommandListsThoseThatExist) {
-    for (const char* arguments : {"", "paint", "check"}) {
+    for (const char* arguments : {"", "paint", "sculpt"}) {
         const ProgramResult result = run(arguments);
         EXPECT_EQ(result.exit_code, 2) << arguments;
         for (const char* command : commands)
