@@ -111,12 +111,12 @@ void add_check_command(CLI::App& program, CommandContext& context) {
     command->add_option("--save", options->save, "write the results, for --against");
     command->add_option("--against", options->against,
                         "fail too when a result moved by more than its budget since --save");
-    command->footer("Examples:\n"
+    command->footer("budget: largest error over what OpenCL allows there; open: share that a "
+                    "comparison decides.\n"
+                    "Examples:\n"
                     "  reradiant check --only fresnel\n"
                     "  reradiant check --save before.json\n"
                     "  reradiant check --against before.json");
-open: share that a "
-                    "comparison decides.");
     command->callback(
         [options, &context] { context.exit_code = run_check(*options, context.common); });
 }

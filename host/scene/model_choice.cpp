@@ -58,7 +58,8 @@ ModelChoice choose_model(const Material& material, Model requested, ModelUse use
     const Model model = requested == Model::Auto ? material.model : requested;
     const std::optional<std::string> refusal = adding_refusal(material);
     if (model == Model::Adding && refusal) {
-        throw_input_error(material.position, *refusal, "use the model auto, walk or weidlich-wilkie");
+        throw_input_error(material.position, *refusal,
+                          "use the model auto, walk or weidlich-wilkie");
     }
     if (model != Model::Auto) {
         return {model, ""};
