@@ -20,8 +20,10 @@ struct PixelSums {
         : sum(static_cast<std::size_t>(bands)), alternating(sum.size()), squares(sum.size()) {}
 
     void read(const FilmSums& film, const FilmLayout& layout, std::size_t pixel) {
-        for (auto* row : {&sum, &alternating, &squares})
-            std::fill(row->begin(), row->end(), 0.0);
+        std::fill(sum.begin(), sum.end(), 0.0);
+        std::fill(alternating.begin(), alternating.end(), 0.0);
+        if (layout.band_variance)
+            std::fill(squares.begin(), squares.end(), 0.0);
         const float* base = film.sums.data() + pixel * layout.floats_per_pixel();
         const auto lanes = static_cast<std::size_t>(layout.lanes);
         for (std::size_t column = 0; column < layout.columns.size(); ++column) {
@@ -77,16 +79,25 @@ double luminance_variance(const FilmSums& film, std::size_t pixel, double n) {
 }
 
 /// Mean over pixels and bands. Sums by chunk, added in order: the result does not depend on
-/// threads.
+/// threads. Between passes this counts in the time of a render, so bands are not told apart.
 double mean_radiance(const FilmSums& film, const FilmLayout& layout, std::size_t pixels, int bands,
                      std::uint32_t samples) {
-    std::vector<double> parts(pixels / pixels_at_once + 1, 0.0);
-    for_each_pixel(film, layout, pixels, bands,
-                   [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
-                       const double n = accepted(film, pixel, samples);
-                       for (const double sum : sums.sum)
-                           parts[chunk] += n > 0.0 ? sum / n : 0.0;
-                   });
+    std::vector<float> weights(static_cast<std::size_t>(layout.lanes), 0.0f);
+    for (std::size_t c = 0; c < layout.columns.size(); ++c)
+        if (layout.columns[c].band >= 0)
+            weights[c] = static_cast<float>(layout.columns[c].weight);
+    const std::size_t chunks = (pixels + pixels_at_once - 1) / pixels_at_once;
+    std::vector<double> parts(chunks, 0.0);
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+        const std::size_t end = std::min(pixels, (chunk + 1) * pixels_at_once);
+        for (std::size_t pixel = chunk * pixels_at_once; pixel < end; ++pixel) {
+            const float* sums = film.sums.data() + pixel * layout.floats_per_pixel();
+            const double n = accepted(film, pixel, samples);
+            // the compensation is below what matters to a mean
+            const float total = std::inner_product(weights.begin(), weights.end(), sums, 0.0f);
+            parts[chunk] += n > 0.0 ? static_cast<double>(total) / n : 0.0;
+        }
+    });
     return std::accumulate(parts.begin(), parts.end(), 0.0) / (static_cast<double>(pixels) * bands);
 }
 
