@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 /// Spline spacings that the evidence chooses from, in steps of the grid, beside one number a band.
 constexpr double spacings_in_steps[] = {1.5, 2.0, 3.0};
 /// Steps that each start is given at first: nearly all end in half as many; otherwise the best of
-/// them goes on.
+/// them goes on, and if that does not end, the best that did is the answer.
 constexpr int first_steps = 80;
 /// Of both curves of a term.
 constexpr std::size_t fewest_knots = 4;
@@ -46,11 +46,20 @@ public:
                         const std::vector<FactorCurves>& starts) {
         SolverSettings solver = settings_.solver;
         solver.most_iterations = std::min(solver.most_iterations, first_steps);
-        FittedCandidate best = best_of(rank, bases, starts, solver);
-        if (best.fit.trace.converged)
-            return best;
-        const FactorCurves reached = best.model->curves(best.fit.parameters);
-        return fit_from(rank, bases, reached, settings_.solver);
+        std::vector<FittedCandidate> fits;
+        for (const FactorCurves& start : starts)
+            fits.push_back(fit_from(rank, bases, start, solver));
+        std::sort(fits.begin(), fits.end(), [](const auto& a, const auto& b) {
+            return a.fit.chi_squared < b.fit.chi_squared;
+        });
+        if (fits.front().fit.trace.converged)
+            return std::move(fits.front());
+        const FactorCurves reached = fits.front().model->curves(fits.front().fit.parameters);
+        FittedCandidate best = fit_from(rank, bases, reached, settings_.solver);
+        for (std::size_t k = 1; k < fits.size() && !best.fit.trace.converged; ++k)
+            if (fits[k].fit.trace.converged)
+                return std::move(fits[k]);
+        return best;
     }
 
     CurveBases splines(double spacing_nm) const {
@@ -86,17 +95,6 @@ public:
     }
 
 private:
-    FittedCandidate best_of(int rank, const CurveBases& bases,
-                            const std::vector<FactorCurves>& starts, const SolverSettings& solver) {
-        FittedCandidate best;
-        for (const FactorCurves& start : starts) {
-            FittedCandidate candidate = fit_from(rank, bases, start, solver);
-            if (!best.model || candidate.fit.chi_squared < best.fit.chi_squared)
-                best = std::move(candidate);
-        }
-        return best;
-    }
-
     FittedCandidate fit_from(int rank, const CurveBases& bases, const FactorCurves& start,
                              const SolverSettings& solver) {
         const auto& [emission, excitation] = bases;
@@ -142,11 +140,11 @@ public:
         variance_ = evidence == Evidence::KnownNoise ? 1.0 : chi_squared_ / freedom;
     }
     /// Chi squared may rise as one of that many degrees of freedom: by their number, give or take
-    /// one standard deviation.
+    /// two standard deviations.
     bool may_be(const FittedCandidate& smooth) const {
         const double fewer = std::max(0.0, numbers_ - needed_numbers(smooth));
         return smooth.fit.chi_squared - chi_squared_ <=
-               variance_ * (fewer + std::sqrt(2.0 * fewer));
+               variance_ * (fewer + 2.0 * std::sqrt(2.0 * fewer));
     }
 
 private:
