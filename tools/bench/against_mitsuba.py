@@ -8,8 +8,8 @@ environment; 512 x 512), each against a reference of its own. Error: relMSE of l
 of d^2 / (ref^2 + 0.01). Each renders at growing sample counts; error times samples is constant for
 independent samples, so the samples that reach --target follow from a fit of slope, and are then
 rendered and timed, both programs in turns, wall seconds of the whole process (start-up, kernels from
-the cache, writing an image). Needs numpy and mitsuba (PyPI); the llvm variants need LLVM 15 or
-later, of which 19 is known to work.
+the cache, writing an image). Needs numpy and mitsuba (PyPI); the llvm variants need LLVM 19
+(libllvm19); with LLVM 15 they abort.
 """
 
 import argparse
