@@ -50,14 +50,18 @@ RenderProgress pass_from(const nlohmann::json& json) {
     return pass;
 }
 
-std::string header_text(const RenderCheckpoint& head, const FilmSums& film) {
+std::string header_text(const RenderCheckpoint& head, FilmSums film) {
+    std::size_t sums = 0, statistics = 0;
+    for (const FilmStrip& strip : film) {
+        sums += strip.sums.size();
+        statistics += strip.statistics.size();
+    }
     nlohmann::json passes = nlohmann::json::array();
     for (const RenderProgress& pass : head.passes)
         passes.push_back(pass_json(pass));
     const nlohmann::json json = {
-        {"identity", head.identity}, {"passes", passes},
-        {"paths", head.paths},       {"rays", head.rays},
-        {"sums", film.sums.size()},  {"statistics", film.statistics.size()}};
+        {"identity", head.identity}, {"passes", passes}, {"paths", head.paths},
+        {"rays", head.rays},         {"sums", sums},     {"statistics", statistics}};
     return fmt::format("{}\n{}\n", format_name, json.dump());
 }
 
@@ -137,8 +141,7 @@ CheckpointSizes parse_header(const fs::path& file, const std::string& text,
 
 } // namespace
 
-std::uint64_t write_checkpoint(const fs::path& file, const RenderCheckpoint& head,
-                               const FilmSums& film) {
+std::uint64_t write_checkpoint(const fs::path& file, const RenderCheckpoint& head, FilmSums film) {
     std::uint64_t bytes = 0;
     write_atomically(file, [&](const fs::path& target) {
         std::ofstream stream(target, std::ios::binary);
@@ -149,8 +152,10 @@ std::uint64_t write_checkpoint(const fs::path& file, const RenderCheckpoint& hea
             bytes += piece.size();
         };
         write(header_text(head, film));
-        write(bytes_of(film.sums));
-        write(bytes_of(film.statistics));
+        for (const FilmStrip& strip : film)
+            write(bytes_of(strip.sums));
+        for (const FilmStrip& strip : film)
+            write(bytes_of(strip.statistics));
         write(sha.hex());
         stream.close();
         if (!stream)

@@ -19,12 +19,12 @@ struct PixelSums {
     explicit PixelSums(int bands)
         : sum(static_cast<std::size_t>(bands)), alternating(sum.size()), squares(sum.size()) {}
 
-    void read(const FilmSums& film, const FilmLayout& layout, std::size_t pixel) {
+    void read(const FilmStrip& strip, const FilmLayout& layout, std::size_t pixel) {
         std::fill(sum.begin(), sum.end(), 0.0);
         std::fill(alternating.begin(), alternating.end(), 0.0);
         if (layout.band_variance)
             std::fill(squares.begin(), squares.end(), 0.0);
-        const float* base = film.sums.data() + pixel * layout.floats_per_pixel();
+        const float* base = strip.sums.data() + pixel * layout.floats_per_pixel();
         const auto lanes = static_cast<std::size_t>(layout.lanes);
         for (std::size_t column = 0; column < layout.columns.size(); ++column) {
             if (layout.columns[column].band < 0)
@@ -43,26 +43,36 @@ struct PixelSums {
     std::vector<double> sum, alternating, squares;
 };
 
-/// Rows of work: large enough to share out, small enough for both cores.
-constexpr std::size_t pixels_at_once = 1024;
+std::size_t chunks_of(std::size_t pixels) {
+    return (pixels + film_strip_unit - 1) / film_strip_unit;
+}
 
-/// Calls visit(pixel, sums, chunk) for every pixel, chunks of pixels in parallel.
+/// Calls visit(first, end, chunk) for chunks of a strip's pixels, in parallel; `chunk` counts
+/// through the film.
 template <typename Visit>
-void for_each_pixel(const FilmSums& film, const FilmLayout& layout, std::size_t pixels, int bands,
+void for_each_chunk(const FilmStrip& strip, const Visit& visit) {
+    tbb::parallel_for(std::size_t{0}, chunks_of(strip.pixels()), [&](std::size_t chunk) {
+        const std::size_t first = chunk * film_strip_unit;
+        visit(first, std::min(strip.pixels(), first + film_strip_unit),
+              strip.first_pixel / film_strip_unit + chunk);
+    });
+}
+
+/// Calls visit(pixel of the strip, sums, chunk) for every pixel.
+template <typename Visit>
+void for_each_pixel(const FilmStrip& strip, const FilmLayout& layout, int bands,
                     const Visit& visit) {
-    const std::size_t chunks = (pixels + pixels_at_once - 1) / pixels_at_once;
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    for_each_chunk(strip, [&](std::size_t first, std::size_t end, std::size_t chunk) {
         PixelSums sums(bands);
-        const std::size_t end = std::min(pixels, (chunk + 1) * pixels_at_once);
-        for (std::size_t pixel = chunk * pixels_at_once; pixel < end; ++pixel) {
-            sums.read(film, layout, pixel);
+        for (std::size_t pixel = first; pixel < end; ++pixel) {
+            sums.read(strip, layout, pixel);
             visit(pixel, sums, chunk);
         }
     });
 }
 
-double accepted(const FilmSums& film, std::size_t pixel, std::uint32_t samples) {
-    return samples - static_cast<double>(film.statistics[pixel * film_statistics_per_pixel + 4]);
+double accepted(const FilmStrip& strip, std::size_t pixel, std::uint32_t samples) {
+    return samples - static_cast<double>(strip.statistics[pixel * film_statistics_per_pixel + 4]);
 }
 
 double variance_of_mean(double sum, double sum_of_squares, double n) {
@@ -72,32 +82,35 @@ double variance_of_mean(double sum, double sum_of_squares, double n) {
     return std::max(0.0, sum_of_squares / n - mean * mean) / (n - 1.0);
 }
 
-double luminance_variance(const FilmSums& film, std::size_t pixel, double n) {
-    const float* y = film.statistics.data() + pixel * film_statistics_per_pixel;
+double luminance_variance(const FilmStrip& strip, std::size_t pixel, double n) {
+    const float* y = strip.statistics.data() + pixel * film_statistics_per_pixel;
     return variance_of_mean(static_cast<double>(y[0]) - static_cast<double>(y[2]),
                             static_cast<double>(y[1]) - static_cast<double>(y[3]), n);
 }
 
+std::size_t pixels_of(FilmSums film) {
+    return film.back().first_pixel + film.back().pixels();
+}
+
 /// Mean over pixels and bands. Sums by chunk, added in order: the result does not depend on
 /// threads. Between passes this counts in the time of a render, so bands are not told apart.
-double mean_radiance(const FilmSums& film, const FilmLayout& layout, std::size_t pixels, int bands,
-                     std::uint32_t samples) {
+double mean_radiance(FilmSums film, const FilmLayout& layout, int bands, std::uint32_t samples) {
     std::vector<float> weights(static_cast<std::size_t>(layout.lanes), 0.0f);
     for (std::size_t c = 0; c < layout.columns.size(); ++c)
         if (layout.columns[c].band >= 0)
             weights[c] = static_cast<float>(layout.columns[c].weight);
-    const std::size_t chunks = (pixels + pixels_at_once - 1) / pixels_at_once;
-    std::vector<double> parts(chunks, 0.0);
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-        const std::size_t end = std::min(pixels, (chunk + 1) * pixels_at_once);
-        for (std::size_t pixel = chunk * pixels_at_once; pixel < end; ++pixel) {
-            const float* sums = film.sums.data() + pixel * layout.floats_per_pixel();
-            const double n = accepted(film, pixel, samples);
-            // the compensation is below what matters to a mean
-            const float total = std::inner_product(weights.begin(), weights.end(), sums, 0.0f);
-            parts[chunk] += n > 0.0 ? static_cast<double>(total) / n : 0.0;
-        }
-    });
+    const std::size_t pixels = pixels_of(film);
+    std::vector<double> parts(chunks_of(pixels), 0.0);
+    for (const FilmStrip& strip : film)
+        for_each_chunk(strip, [&](std::size_t first, std::size_t end, std::size_t chunk) {
+            for (std::size_t pixel = first; pixel < end; ++pixel) {
+                const float* sums = strip.sums.data() + pixel * layout.floats_per_pixel();
+                const double n = accepted(strip, pixel, samples);
+                // the compensation is below what matters to a mean
+                const float total = std::inner_product(weights.begin(), weights.end(), sums, 0.0f);
+                parts[chunk] += n > 0.0 ? static_cast<double>(total) / n : 0.0;
+            }
+        });
     return std::accumulate(parts.begin(), parts.end(), 0.0) / (static_cast<double>(pixels) * bands);
 }
 
@@ -197,86 +210,83 @@ FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool forc
     return layout;
 }
 
-std::uint64_t FilmSums::refused() const {
+std::uint64_t FilmStrip::refused() const {
     double total = 0.0;
     for (std::size_t i = 4; i < statistics.size(); i += film_statistics_per_pixel)
         total += static_cast<double>(statistics[i]);
     return static_cast<std::uint64_t>(total);
 }
 
-namespace {
-
-/// Squared differences of a film's halves, per pixel, and per pixel and band where they are wanted.
-struct Halves {
-    Halves(std::size_t pixels, const WavelengthGrid& bands, bool wants_bands)
-        : y(pixels), by_band(wants_bands ? pixels * static_cast<std::size_t>(bands.count) : 0),
-          weights(xyz_weights(bands)) {}
-
-    void read(std::size_t pixel, const PixelSums& sums, double n, std::uint32_t samples) {
-        double luminance = 0.0;
-        for (std::size_t b = 0; b < weights.size() && n > 0.0; ++b) {
-            const double d = half_difference(sums, b, n, samples);
-            luminance += weights[b][1] * d;
-            if (!by_band.empty())
-                by_band[pixel * weights.size() + b] = static_cast<float>(d * d);
-        }
-        y[pixel] = static_cast<float>(luminance * luminance);
-    }
-
-    std::vector<float> y, by_band;
-    std::vector<Xyz> weights;
-};
-
-} // namespace
-
-SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int width, int height,
-                           const WavelengthGrid& bands, std::uint32_t samples) {
-    SpectralImage image;
-    image.width = width;
-    image.height = height;
-    image.bands = bands;
+FilmResolver::FilmResolver(const FilmLayout& layout, int width, int height,
+                           const WavelengthGrid& bands, std::uint32_t samples)
+    : layout_(layout), samples_(samples) {
+    image_.width = width;
+    image_.height = height;
+    image_.bands = bands;
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    const auto count = static_cast<std::size_t>(bands.count);
-    image.values.resize(pixels * count);
-    image.variance_bands.resize(layout.band_variance ? pixels * count : 0);
-    image.sample_count.resize(pixels);
-    image.variance_y.resize(pixels);
-    Halves halves(pixels, bands, layout.band_variance);
-    for_each_pixel(
-        film, layout, pixels, bands.count,
-        [&](std::size_t pixel, const PixelSums& sums, std::size_t) {
-            const double n = accepted(film, pixel, samples);
-            const double scale = n > 0.0 ? 1.0 / n : 0.0;
-            for (std::size_t b = 0; b < count; ++b)
-                image.values[pixel * count + b] = static_cast<float>(sums.sum[b] * scale);
-            for (std::size_t b = 0; layout.band_variance && b < count; ++b)
-                image.variance_bands[pixel * count + b] =
-                    static_cast<float>(variance_of_mean(sums.sum[b], sums.squares[b], n));
-            image.sample_count[pixel] = static_cast<float>(n);
-            image.variance_y[pixel] = static_cast<float>(luminance_variance(film, pixel, n));
-            halves.read(pixel, sums, n, samples);
-        });
-    if (!layout.independent_samples) {
-        scale_variances(image.variance_y, halves.y, width, height, 1);
-        scale_variances(image.variance_bands, halves.by_band, width, height,
-                        layout.band_variance ? count : 0);
-    }
-    return image;
+    // Memory is taken as strips fill it.
+    image_.values.reserve(pixels * static_cast<std::size_t>(bands.count));
+    image_.variance_bands.reserve(layout.band_variance ? image_.values.capacity() : 0);
+    halves_bands_.reserve(image_.variance_bands.capacity());
+    image_.sample_count.resize(pixels);
+    image_.variance_y.resize(pixels);
+    halves_y_.resize(pixels);
+    for (const Xyz& weights : xyz_weights(bands))
+        y_weights_.push_back(weights[1]);
 }
 
-RelmseEstimate estimated_relmse(const FilmSums& film, const FilmLayout& layout, int bands,
+void FilmResolver::add(const FilmStrip& strip) {
+    const std::size_t bands = y_weights_.size();
+    const bool by_band = layout_.band_variance;
+    const std::size_t entries = (strip.first_pixel + strip.pixels()) * bands;
+    image_.values.resize(entries);
+    image_.variance_bands.resize(by_band ? entries : 0);
+    halves_bands_.resize(image_.variance_bands.size());
+    for_each_pixel(strip, layout_, static_cast<int>(bands),
+                   [&](std::size_t at, const PixelSums& sums, std::size_t) {
+                       const std::size_t pixel = strip.first_pixel + at;
+                       const double n = accepted(strip, at, samples_);
+                       double luminance = 0.0;
+                       for (std::size_t b = 0; b < bands; ++b) {
+                           const double d = n > 0.0 ? half_difference(sums, b, n, samples_) : 0.0;
+                           luminance += y_weights_[b] * d;
+                           image_.values[pixel * bands + b] =
+                               static_cast<float>(n > 0.0 ? sums.sum[b] / n : 0.0);
+                           if (by_band) {
+                               halves_bands_[pixel * bands + b] = static_cast<float>(d * d);
+                               image_.variance_bands[pixel * bands + b] = static_cast<float>(
+                                   variance_of_mean(sums.sum[b], sums.squares[b], n));
+                           }
+                       }
+                       halves_y_[pixel] = static_cast<float>(luminance * luminance);
+                       image_.sample_count[pixel] = static_cast<float>(n);
+                       image_.variance_y[pixel] =
+                           static_cast<float>(luminance_variance(strip, at, n));
+                   });
+}
+
+SpectralImage FilmResolver::take() {
+    if (!layout_.independent_samples) {
+        scale_variances(image_.variance_y, halves_y_, image_.width, image_.height, 1);
+        scale_variances(image_.variance_bands, halves_bands_, image_.width, image_.height,
+                        layout_.band_variance ? y_weights_.size() : 0);
+    }
+    return std::move(image_);
+}
+
+RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int bands,
                                 std::uint32_t samples) {
     if (samples < 2)
         return {};
-    const std::size_t pixels = film.statistics.size() / film_statistics_per_pixel;
-    const double mean = mean_radiance(film, layout, pixels, bands, samples);
+    const double mean = mean_radiance(film, layout, bands, samples);
     const double floor = 0.01 * mean * mean;
-    std::vector<ErrorSums> parts(pixels / pixels_at_once + 1);
-    for_each_pixel(film, layout, pixels, bands,
-                   [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
-                       const double n = accepted(film, pixel, samples);
-                       parts[chunk].add(squared_error(sums, n, samples, floor) / bands);
-                   });
+    std::vector<ErrorSums> parts(chunks_of(pixels_of(film)));
+    for (const FilmStrip& strip : film)
+        for_each_pixel(strip, layout, bands,
+                       [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
+                           const double n = accepted(strip, pixel, samples);
+                           parts[chunk].add(squared_error(sums, n, samples, floor) / bands);
+                       });
     return estimate_from(parts);
 }
 

@@ -30,17 +30,39 @@ constexpr std::size_t film_statistics_per_pixel = 5;
 
 FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool force_scatter);
 
-/// Sums of all samples where the device keeps them.
-struct FilmSums {
+/// Sums of all samples of successive pixels, where the device keeps them.
+struct FilmStrip {
+    std::size_t first_pixel = 0;
     std::span<const float> sums;       ///< [pixel][row][column], see kernels/film.cl
     std::span<const float> statistics; ///< [pixel][5]
+
+    std::size_t pixels() const { return statistics.size() / film_statistics_per_pixel; }
     std::uint64_t refused() const;
 };
+/// A film's strips in order. All but the last hold a multiple of `film_strip_unit` pixels.
+using FilmSums = std::span<const FilmStrip>;
+constexpr std::size_t film_strip_unit = 1024;
 
-/// Mean image with sample count and variance of the mean (film_variance.h); `samples` were taken of
-/// every pixel.
-SpectralImage resolve_film(const FilmSums& film, const FilmLayout& layout, int width, int height,
-                           const WavelengthGrid& bands, std::uint32_t samples);
+/// Makes the mean image with sample count and variance of the mean (film_variance.h), strip after
+/// strip, so that a strip may go as soon as it was added.
+class FilmResolver {
+public:
+    /// `samples` were taken of every pixel.
+    FilmResolver(const FilmLayout& layout, int width, int height, const WavelengthGrid& bands,
+                 std::uint32_t samples);
+    /// Strips come in order.
+    void add(const FilmStrip& strip);
+    /// The image, once all strips were added.
+    SpectralImage take();
+
+private:
+    const FilmLayout& layout_;
+    std::uint32_t samples_;
+    SpectralImage image_;
+    /// Squared differences of the film's halves, per pixel, and per band where they are wanted.
+    std::vector<float> halves_y_, halves_bands_;
+    std::vector<double> y_weights_; ///< of bands
+};
 
 /// What a render can say about its own error without a reference.
 struct RelmseEstimate {
@@ -53,7 +75,7 @@ struct RelmseEstimate {
 /// d^2 / (ref^2 + 0.01 mean(ref)^2) with d from the difference of the even and the odd samples'
 /// halves, which has the variance of the mean. Nothing is known below two samples, and no interval
 /// below two pixels.
-RelmseEstimate estimated_relmse(const FilmSums& film, const FilmLayout& layout, int bands,
+RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int bands,
                                 std::uint32_t samples);
 
 } // namespace reradiant

@@ -86,7 +86,7 @@ bool must_stop(const RenderProgress& state, const RenderOptions& options) {
            state.relmse <= options.relmse;
 }
 
-void estimate_error(RenderProgress& state, const FilmSums& film, const FilmLayout& layout,
+void estimate_error(RenderProgress& state, FilmSums film, const FilmLayout& layout,
                     const WavelengthPlan& plan) {
     const RelmseEstimate estimate = estimated_relmse(film, layout, plan.film.count, state.samples);
     state.relmse = estimate.value;
@@ -94,14 +94,26 @@ void estimate_error(RenderProgress& state, const FilmSums& film, const FilmLayou
     state.relmse_high = estimate.high;
 }
 
-SpectralImage resolved(const Wavefront& wavefront, const FilmLayout& layout, const Scene& scene,
-                       const WavelengthPlan& plan, const RenderProgress& state) {
-    SpectralImage image;
-    wavefront.with_film([&](const FilmSums& film) {
-        image = resolve_film(film, layout, scene.film.width, scene.film.height, plan.film,
-                             state.samples);
+FilmResolver film_resolver(const FilmLayout& layout, const Scene& scene, const WavelengthPlan& plan,
+                           const RenderProgress& state) {
+    return {layout, scene.film.width, scene.film.height, plan.film, state.samples};
+}
+
+SpectralImage resolved(const Wavefront& wavefront, FilmResolver resolver) {
+    wavefront.with_film([&](FilmSums film) {
+        for (const FilmStrip& strip : film)
+            resolver.add(strip);
     });
-    return image;
+    return resolver.take();
+}
+
+/// Takes the film out of the wavefront; the image needs no memory on top of it.
+void finish_film(RenderResult& result, Wavefront& wavefront, FilmResolver resolver) {
+    wavefront.take_film([&](const FilmStrip& strip) {
+        resolver.add(strip);
+        result.non_finite += strip.refused();
+    });
+    result.image = resolver.take();
 }
 
 void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables& tables) {
@@ -174,7 +186,7 @@ public:
             return {};
         const RenderCheckpoint kept =
             read_checkpoint(options_.checkpoint, head_.identity, wavefront.film_float_count());
-        wavefront.restore_film({kept.sums, kept.statistics});
+        wavefront.restore_film(kept.sums, kept.statistics);
         result.passes = kept.passes;
         result.paths = kept.paths;
         result.rays = kept.rays;
@@ -194,7 +206,7 @@ public:
         head_.paths = result.paths + wavefront.statistics().paths;
         head_.rays = result.rays + wavefront.statistics().rays;
         wavefront.with_film(
-            [&](const FilmSums& film) { write_checkpoint(options_.checkpoint, head_, film); });
+            [&](FilmSums film) { write_checkpoint(options_.checkpoint, head_, film); });
         written_ = Clock::now();
         write_seconds_ = seconds_since(start);
     }
@@ -230,8 +242,8 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
     const std::uint64_t paths =
         options.batch_paths * (depth * vertex + models.path + lanes * 4 + sizeof(RayRecord) +
                                sizeof(HitRecord) + sizeof(PathState));
-    // The film is mapped where it is; the image is held once more while it is written.
-    return film + 2 * image + paths;
+    // The film is mapped where it is and goes as the image comes.
+    return std::max(film, image) + image / 8 + paths;
 }
 
 RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
@@ -266,20 +278,20 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
         state.samples += samples;
         state.seconds = seconds_before + seconds_since(rendering) - observing_seconds;
         wavefront.with_film(
-            [&](const FilmSums& film) { estimate_error(state, film, layout, result.plan); });
+            [&](FilmSums film) { estimate_error(state, film, layout, result.plan); });
         result.passes.push_back(state);
         if (observe)
             observing_seconds += seconds_of([&] {
-                observe(state,
-                        [&] { return resolved(wavefront, layout, scene, result.plan, state); });
+                observe(state, [&] {
+                    return resolved(wavefront, film_resolver(layout, scene, result.plan, state));
+                });
             });
         result.interrupted = progress && !progress(state);
         checkpoints.after_pass(wavefront, result);
         if (result.interrupted)
             break;
     }
-    result.image = resolved(wavefront, layout, scene, result.plan, state);
-    wavefront.with_film([&](const FilmSums& film) { result.non_finite = film.refused(); });
+    finish_film(result, wavefront, film_resolver(layout, scene, result.plan, state));
     result.samples = state.samples;
     result.relmse = state.relmse;
     collect(result, wavefront, tables);

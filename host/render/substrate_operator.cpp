@@ -11,7 +11,11 @@ namespace reradiant {
 
 namespace {
 
-constexpr int most_factors = 4;
+constexpr int most_factors = 4; ///< that are looked for
+/// Of fluorophores, whose factors are known: beyond it the dense product costs no more.
+constexpr std::size_t most_fluorophores = 8;
+/// Factors are applied in single precision.
+constexpr double largest_factor = 1e12;
 /// Above this relative error a matrix is applied densely, so that nothing is dropped: it is the
 /// size of single-precision rounding over a path.
 constexpr double factor_tolerance = 1e-6;
@@ -38,6 +42,19 @@ bool may_factor(const Eigen::MatrixXd& matrix) {
             return false;
     }
     return true;
+}
+
+/// Factors within the tolerance, or none.
+MaskedFactors find_factors(const Substrate& substrate, const WavelengthGrid& cells,
+                           const Eigen::MatrixXd& fluorescence) {
+    if (!substrate.matrix && substrate.fluorophores.size() <= most_fluorophores) {
+        MaskedFactors known = factors_of_fluorophores(substrate.fluorophores, cells);
+        return known.excitation.maxCoeff() <= largest_factor ? known : MaskedFactors{};
+    }
+    if (!may_factor(fluorescence))
+        return {};
+    MaskedFactors found = factorise_lower(fluorescence, most_factors, factor_tolerance);
+    return found.relative_error <= factor_tolerance ? found : MaskedFactors{};
 }
 
 /// 1, or 1 / step for a line, whose radiance is integrated over wavelength.
@@ -108,14 +125,9 @@ SubstrateOnCells substrate_on_cells(const Substrate& substrate, const Wavelength
     on_cells.fluorescence = substrate.fluorescence_on(cells);
     if (has_upper_triangle(on_cells.fluorescence))
         return on_cells; // anti-Stokes emission: the masked form cannot hold it
-    if (!may_factor(on_cells.fluorescence))
-        return on_cells;
-    const MaskedFactors factors =
-        factorise_lower(on_cells.fluorescence, most_factors, factor_tolerance);
-    if (factors.relative_error <= factor_tolerance) {
-        on_cells.emission = factors.emission;
-        on_cells.excitation = factors.excitation;
-    }
+    const MaskedFactors factors = find_factors(substrate, cells, on_cells.fluorescence);
+    on_cells.emission = factors.emission;
+    on_cells.excitation = factors.excitation;
     return on_cells;
 }
 

@@ -144,7 +144,7 @@ private:
         }
         out_.features.dense_matrix = true;
         out_.notes.push_back(fmt::format("material '{}': dense re-radiation matrix, it does not "
-                                         "factor to 4 terms or holds anti-Stokes emission",
+                                         "factor to few terms or holds anti-Stokes emission",
                                          name_));
     }
 

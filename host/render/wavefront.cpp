@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 
 namespace reradiant {
 
@@ -15,6 +16,8 @@ namespace {
 /// (CASES 37: PoCL lays out a whole group's private memory on one stack).
 constexpr std::size_t scalar_group = 32;
 constexpr std::size_t vector_group = 8;
+/// Of the film in one piece: a piece's memory goes back while the image takes its own.
+constexpr std::size_t strip_bytes = std::size_t{64} << 20;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -74,15 +77,27 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         lobe_weights_ = {device, slots * 2u * static_cast<std::size_t>(scene.features.lobes)};
         radiance_ = {device,
                      static_cast<std::size_t>(capacity_) * static_cast<std::size_t>(lanes_)};
-        film_sums_ = {device, pixel_count_ * film_layout_.floats_per_pixel()};
-        film_statistics_ = {device, pixel_count_ * film_statistics_per_pixel};
         film_bands_ = {device, std::span<const std::int32_t>(film_layout_.lane_bands)};
         film_weights_ = {device, std::span<const float>(film_layout_.lane_weights)};
         y_weights_ = {device, std::span<const float>(film_layout_.y_weights)};
-        film_sums_.fill_zero();
-        film_statistics_.fill_zero();
+        make_film();
         device_.queue().finish();
     });
+}
+
+void Wavefront::make_film() {
+    const std::size_t units = std::max<std::size_t>(
+        1, strip_bytes / (film_layout_.floats_per_pixel() * sizeof(float) * film_strip_unit));
+    const auto together = static_cast<std::uint32_t>(units * film_strip_unit);
+    for (std::uint32_t first = 0; first < pixel_count_; first += together) {
+        const std::uint32_t pixels = std::min(together, pixel_count_ - first);
+        strips_.push_back({first,
+                           pixels,
+                           {device_, pixels * film_layout_.floats_per_pixel()},
+                           {device_, pixels * film_statistics_per_pixel}});
+        strips_.back().sums.fill_zero();
+        strips_.back().statistics.fill_zero();
+    }
 }
 
 void Wavefront::build_kernels(BuildStatistics& build) {
@@ -103,9 +118,11 @@ void Wavefront::render_pass(std::uint32_t first_sample, std::uint32_t samples) {
         for (std::uint32_t done = 0; done < samples;) {
             const std::uint32_t together = std::min(samples - done, capacity_);
             const std::uint32_t pixels_at_once = capacity_ / together;
-            for (std::uint32_t first = 0; first < pixel_count_; first += pixels_at_once)
-                trace_batch({first, std::min(pixels_at_once, pixel_count_ - first),
-                             first_sample + done, together});
+            for (const Strip& strip : strips_)
+                for (std::uint32_t first = 0; first < strip.pixels; first += pixels_at_once)
+                    trace_batch({&strip, strip.first_pixel + first,
+                                 std::min(pixels_at_once, strip.pixels - first),
+                                 first_sample + done, together});
             done += together;
         }
     });
@@ -212,9 +229,10 @@ void Wavefront::gather(const Batch& batch) {
 }
 
 void Wavefront::add_to_film(const Batch& batch) {
-    film_.bind(film_sums_.buffer(), film_statistics_.buffer(), radiance_.buffer(), paths_.buffer(),
-               film_bands_.buffer(), film_weights_.buffer(), y_weights_.buffer(), batch.first_pixel,
-               batch.first_sample, batch.samples, batch.pixels);
+    film_.bind(batch.strip->sums.buffer(), batch.strip->statistics.buffer(), radiance_.buffer(),
+               paths_.buffer(), film_bands_.buffer(), film_weights_.buffer(), y_weights_.buffer(),
+               batch.first_pixel - batch.strip->first_pixel, batch.first_sample, batch.samples,
+               batch.pixels);
     film_.launch(device_, batch.pixels);
     wait_for_kernels(statistics_.film_seconds);
 }
@@ -225,23 +243,56 @@ void Wavefront::wait_for_kernels(double& stage_seconds) {
     stage_seconds += seconds_since(start);
 }
 
-void Wavefront::with_film(const std::function<void(const FilmSums&)>& use) const {
+void Wavefront::with_film(const std::function<void(FilmSums)>& use) const {
     opencl_checked("reading the film", [&] {
-        const auto sums = film_sums_.map(CL_MAP_READ, 0, film_sums_.size());
-        const auto statistics = film_statistics_.map(CL_MAP_READ, 0, film_statistics_.size());
-        use({sums.span(), statistics.span()});
+        std::deque<DeviceArray<float>::Mapping> mappings; // they cannot be moved
+        const auto mapped = [&](const DeviceArray<float>& array) {
+            return std::span<const float>(
+                mappings.emplace_back(array, 0, array.size(), CL_MAP_READ).span());
+        };
+        std::vector<FilmStrip> film;
+        for (const Strip& strip : strips_)
+            film.push_back({strip.first_pixel, mapped(strip.sums), mapped(strip.statistics)});
+        use(film);
     });
 }
 
-void Wavefront::restore_film(const FilmSums& film) const {
-    if (film.sums.size() != film_sums_.size() || film.statistics.size() != film_statistics_.size())
-        throw_runtime_error("the film that is restored has another size");
-    opencl_checked("restoring the film", [&] {
-        const auto sums = film_sums_.map(CL_MAP_WRITE, 0, film_sums_.size());
-        const auto statistics = film_statistics_.map(CL_MAP_WRITE, 0, film_statistics_.size());
-        std::copy(film.sums.begin(), film.sums.end(), sums.span().begin());
-        std::copy(film.statistics.begin(), film.statistics.end(), statistics.span().begin());
+void Wavefront::take_film(const std::function<void(const FilmStrip&)>& use) {
+    opencl_checked("reading the film", [&] {
+        for (Strip& strip : strips_) {
+            {
+                const auto sums = strip.sums.map(CL_MAP_READ, 0, strip.sums.size());
+                const auto statistics =
+                    strip.statistics.map(CL_MAP_READ, 0, strip.statistics.size());
+                use({strip.first_pixel, sums.span(), statistics.span()});
+            }
+            device_.queue().finish(); // or the mapping would keep the memory
+            strip.sums = {};
+            strip.statistics = {};
+        }
     });
+}
+
+void Wavefront::restore_film(std::span<const float> sums, std::span<const float> statistics) const {
+    const std::size_t per_pixel = film_layout_.floats_per_pixel();
+    if (sums.size() != pixel_count_ * per_pixel ||
+        statistics.size() != pixel_count_ * film_statistics_per_pixel)
+        throw_runtime_error("the film that is restored has another size");
+    const auto copy = [](const DeviceArray<float>& array, std::span<const float> from) {
+        const auto mapping = array.map(CL_MAP_WRITE, 0, array.size());
+        std::copy(from.begin(), from.end(), mapping.span().begin());
+    };
+    opencl_checked("restoring the film", [&] {
+        for (const Strip& strip : strips_) {
+            copy(strip.sums, sums.subspan(strip.first_pixel * per_pixel, strip.sums.size()));
+            copy(strip.statistics, statistics.subspan(strip.first_pixel * film_statistics_per_pixel,
+                                                      strip.statistics.size()));
+        }
+    });
+}
+
+std::size_t Wavefront::film_float_count() const {
+    return pixel_count_ * (film_layout_.floats_per_pixel() + film_statistics_per_pixel);
 }
 
 std::size_t Wavefront::device_bytes() const {
@@ -249,8 +300,8 @@ std::size_t Wavefront::device_bytes() const {
            walk_parts_.bytes() + walk_chunks_.bytes() + walk_vertices_.bytes() + textures_.bytes() +
            hero_lanes_.bytes() + hero_weights_.bytes() + colours_.bytes() + lights_.bytes() +
            tables_.bytes() + rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() + paths_.bytes() +
-           vertices_.bytes() + lobe_weights_.bytes() + radiance_.bytes() + film_sums_.bytes() +
-           film_statistics_.bytes() + film_bands_.bytes() + film_weights_.bytes() +
+           vertices_.bytes() + lobe_weights_.bytes() + radiance_.bytes() +
+           film_float_count() * sizeof(float) + film_bands_.bytes() + film_weights_.bytes() +
            y_weights_.bytes();
 }
 

@@ -49,21 +49,32 @@ public:
     void render_pass(std::uint32_t first_sample, std::uint32_t samples);
 
     /// Calls `use` with the film's sums as they are on the device, mapped for the call.
-    void with_film(const std::function<void(const FilmSums&)>& use) const;
-    /// Replaces the film's sums by those of an earlier render; their sizes must be the film's.
-    void restore_film(const FilmSums& film) const;
+    void with_film(const std::function<void(FilmSums)>& use) const;
+    /// Calls `use` with one strip after the other and frees its memory. Nothing can be rendered
+    /// afterwards.
+    void take_film(const std::function<void(const FilmStrip&)>& use);
+    /// Replaces the film's sums by those of an earlier render, of all pixels; their sizes must be
+    /// the film's.
+    void restore_film(std::span<const float> sums, std::span<const float> statistics) const;
     /// Numbers that the film's sums and statistics hold together.
-    std::size_t film_float_count() const { return film_sums_.size() + film_statistics_.size(); }
+    std::size_t film_float_count() const;
     const WavefrontStatistics& statistics() const { return statistics_; }
     std::size_t device_bytes() const;
 
 private:
+    /// Successive pixels of the film, few enough for any device's largest buffer.
+    struct Strip {
+        std::uint32_t first_pixel, pixels;
+        DeviceArray<float> sums, statistics;
+    };
     struct Batch {
+        const Strip* strip;
         std::uint32_t first_pixel, pixels, first_sample, samples;
         std::uint32_t paths() const { return pixels * samples; }
     };
 
     void build_kernels(BuildStatistics& build);
+    void make_film();
     void trace_batch(const Batch& batch);
     void trace_paths(const Batch& batch);
     bool walks_fit();
@@ -104,7 +115,8 @@ private:
     DeviceArray<HitRecord> hits_;
     DeviceArray<PathState> paths_;
     DeviceArray<VertexRecord> vertices_;
-    DeviceArray<float> lobe_weights_, radiance_, film_sums_, film_statistics_;
+    DeviceArray<float> lobe_weights_, radiance_;
+    std::vector<Strip> strips_;
     DeviceArray<std::int32_t> film_bands_;
     DeviceArray<float> film_weights_, y_weights_;
 };

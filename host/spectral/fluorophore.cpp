@@ -88,30 +88,62 @@ private:
     std::vector<double> whole_;
 };
 
-void add_fluorophore(const Fluorophore& fluorophore, ReradiationMatrix& matrix) {
-    const WavelengthGrid& excitation = matrix.excitation;
+/// Calls visit(i, li, absorbed, normal) for every piece of every excitation cell: the piece around
+/// li adds absorbed / normal times the mean of e over what of an emission cell lies above li.
+template <typename Visit>
+void for_each_piece(const Fluorophore& fluorophore, const WavelengthGrid& emission,
+                    const WavelengthGrid& excitation, const Visit& visit) {
     const double from_nm = std::max(1e-3, excitation.lower_edge_nm(0));
-    const double to_nm = std::max(matrix.emission.upper_edge_nm(matrix.emission.count - 1),
+    const double to_nm = std::max(emission.upper_edge_nm(emission.count - 1),
                                   fluorophore.emission.described_to_nm());
     const PhotonIntegral photons(fluorophore.emission, from_nm, std::max(from_nm + 1.0, to_nm));
-    const EmissionCells cells(fluorophore.emission, matrix.emission);
     const int pieces =
         std::max(1, static_cast<int>(std::ceil(excitation.step_nm / quadrature_step_nm)));
     const double piece_nm = excitation.step_nm / pieces;
-    for (int i = 0; i < excitation.count; ++i) {
+    for (int i = 0; i < excitation.count; ++i)
         for (int piece = 0; piece < pieces; ++piece) {
             const double a = excitation.lower_edge_nm(i) + piece * piece_nm;
             const double li = a + 0.5 * piece_nm;
             const double normal = photons.above(li);
             // Below the smallest normal number a ratio of tails has no digits left.
-            if (!(li > 0.0) || !(normal > 1e-290))
-                continue;
-            const double absorbed = fluorophore.quantum_yield *
-                                    fluorophore.excitation.average(a, a + piece_nm) * li * piece_nm;
-            for (int o = 0; o < matrix.emission.count; ++o)
-                matrix.values(o, i) += absorbed * (cells.above(o, li) / normal);
+            if (li > 0.0 && normal > 1e-290)
+                visit(i, li,
+                      fluorophore.quantum_yield * fluorophore.excitation.average(a, a + piece_nm) *
+                          li * piece_nm,
+                      normal);
         }
+}
+
+void add_fluorophore(const Fluorophore& fluorophore, ReradiationMatrix& matrix) {
+    const EmissionCells cells(fluorophore.emission, matrix.emission);
+    for_each_piece(fluorophore, matrix.emission, matrix.excitation,
+                   [&](int i, double li, double absorbed, double normal) {
+                       for (int o = 0; o < matrix.emission.count; ++o)
+                           matrix.values(o, i) += absorbed * (cells.above(o, li) / normal);
+                   });
+}
+
+/// Factors of one fluorophore, the largest emission 1. Where all that an excitation cell sends
+/// above itself is nothing beside the rest it has none: tails would span hundreds of orders.
+void set_factors(const Fluorophore& fluorophore, const WavelengthGrid& cells,
+                 Eigen::Ref<Eigen::VectorXd> emission, Eigen::Ref<Eigen::VectorXd> excitation) {
+    constexpr double nothing = 1e-12;
+    for (int o = 0; o < cells.count; ++o)
+        emission(o) = fluorophore.emission.average(cells.lower_edge_nm(o), cells.upper_edge_nm(o));
+    const double largest = emission.maxCoeff();
+    if (!(largest > 0.0))
+        return;
+    for_each_piece(fluorophore, cells, cells, [&](int i, double, double absorbed, double normal) {
+        excitation(i) += absorbed * (largest / normal);
+    });
+    emission /= largest;
+    Eigen::VectorXd sent = excitation;
+    double most_above = 0.0;
+    for (int i = cells.count - 1; i >= 0; --i) {
+        sent(i) *= most_above;
+        most_above = std::max(most_above, emission(i));
     }
+    excitation = (sent.array() > nothing * sent.maxCoeff()).select(excitation, 0.0);
 }
 
 } // namespace
@@ -133,6 +165,19 @@ ReradiationMatrix matrix_from_fluorophores(const std::vector<Fluorophore>& fluor
             matrix.values(o, i) +=
                 reflectance.average(excitation.lower_edge_nm(i), excitation.upper_edge_nm(i));
     return matrix;
+}
+
+MaskedFactors factors_of_fluorophores(const std::vector<Fluorophore>& fluorophores,
+                                      const WavelengthGrid& cells) {
+    const auto rank = static_cast<Eigen::Index>(fluorophores.size());
+    MaskedFactors factors{Eigen::MatrixXd::Zero(cells.count, rank),
+                          Eigen::MatrixXd::Zero(cells.count, rank), 0.0};
+    for (Eigen::Index k = 0; k < rank; ++k) {
+        const Fluorophore& fluorophore = fluorophores[static_cast<std::size_t>(k)];
+        require_usable(fluorophore, cells, cells);
+        set_factors(fluorophore, cells, factors.emission.col(k), factors.excitation.col(k));
+    }
+    return factors;
 }
 
 } // namespace reradiant

@@ -95,6 +95,12 @@ struct MaskedFactors {
     int rank() const { return static_cast<int>(emission.cols()); }
 };
 
+/// The factors that fluorophores have by themselves, one term each: of the strictly lower triangle
+/// of matrix_from_fluorophores on a square grid, exact but for excitation cells that send less than
+/// 1e-12 of the most to others. std::invalid_argument as there.
+MaskedFactors factors_of_fluorophores(const std::vector<Fluorophore>& fluorophores,
+                                      const WavelengthGrid& cells);
+
 /// Non-negative factors of the strictly lower triangle of a square matrix, the smallest rank
 /// <= max_rank whose relative error is at most `tolerance`, else the best of rank max_rank.
 /// Rank 0 for a zero triangle. Upper triangle and diagonal are not looked at.
