@@ -76,6 +76,7 @@ nlohmann::ordered_json render_statistics(const RenderResult& result, const Devic
           {"from_cache", result.build.from_cache},
           {"source_bytes", result.build.source_bytes}}},
         {"device_bytes", result.device_bytes},
+        {"mapped_bytes", result.mapped_bytes},
         {"table_bytes", result.table_bytes},
         {"peak_memory_bytes", peak_memory_bytes()}};
 }

@@ -128,6 +128,7 @@ void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables
     result.paths += statistics.paths; // on top of a resumed render's
     result.rays += statistics.rays;
     result.build_seconds = result.build.seconds;
+    result.mapped_bytes = statistics.mapped_bytes;
     result.device_bytes = wavefront.device_bytes();
     result.table_bytes = tables.tables.size() * sizeof(float);
     result.features = tables.features.listed();

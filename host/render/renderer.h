@@ -71,6 +71,7 @@ struct RenderResult {
     std::map<std::string, bool> features;
     std::vector<std::string> left_out, notes;
     std::size_t device_bytes = 0, table_bytes = 0;
+    std::uint64_t mapped_bytes = 0; ///< of rays and hits, between device and host
 };
 
 /// Renders a scene. `progress` is called after every pass; returning false stops the render, and

@@ -183,6 +183,7 @@ bool Wavefront::intersect(const Batch& batch, std::uint32_t depth) {
     if (active > 0)
         geometry_.intersect(rays.span(), hits.span(), depth == 0, settings_.threads);
     statistics_.rays += static_cast<std::uint64_t>(active);
+    statistics_.mapped_bytes += rays.span().size_bytes() + hits.span().size_bytes();
     statistics_.intersect_seconds += seconds_since(start);
     return active > 0;
 }
@@ -213,6 +214,7 @@ void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
     if (active > 0)
         geometry_.occlude(rays.span(), settings_.threads);
     statistics_.rays += static_cast<std::uint64_t>(active);
+    statistics_.mapped_bytes += 2 * rays.span().size_bytes(); // there and back
     statistics_.occlude_seconds += seconds_since(start);
 }
 

@@ -21,6 +21,9 @@ struct WavefrontStatistics {
            film_seconds = 0.0; ///< kernels
     std::uint64_t paths = 0;
     std::uint64_t rays = 0; ///< camera, path and shadow rays that were traced
+    /// Rays and hits mapped for the host: what would cross the bus of a device with memory of its
+    /// own.
+    std::uint64_t mapped_bytes = 0;
 };
 
 /// Chunks of events that walks have at first; a batch that needs more gets more.

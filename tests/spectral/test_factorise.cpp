@@ -158,3 +158,18 @@ TEST(Factorise, NegativeNoiseIsFittedByNonNegativeFactors) {
     EXPECT_GE(factors.emission.minCoeff(), 0.0);
     EXPECT_NEAR(factors.relative_error, 1.0, 1e-9);
 }
+
+TEST(Factorise, FluorophoresBringTheirOwnFactors) {
+    std::vector<Fluorophore> dyes = fluorophores(4);
+    // absorbs red of its own emission, where the tail that it is scaled by is 1e-200 and less
+    dyes.push_back({Spectrum::constant(0.2), Spectrum::gaussian(400, 12, 1.0), 0.9});
+    dyes.push_back({Spectrum::gaussian(400, 30, 0.3), Spectrum::gaussian(500, 20, 1.0), 0.0});
+    const Eigen::MatrixXd values = matrix_from_fluorophores(dyes, Spectrum(), grid, grid).values;
+    const MaskedFactors factors = factors_of_fluorophores(dyes, grid);
+    EXPECT_EQ(factors.rank(), 6);
+    EXPECT_LE(relative_error(factors, values), 1e-12);
+    EXPECT_TRUE(factors.emission.allFinite() && factors.excitation.allFinite());
+    EXPECT_GE(factors.excitation.minCoeff(), 0.0);
+    EXPECT_EQ(factors.excitation.col(5).maxCoeff(), 0.0); // a yield of 0 sends nothing
+    EXPECT_EQ(factors_of_fluorophores({}, grid).rank(), 0);
+}

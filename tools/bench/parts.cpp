@@ -1,6 +1,6 @@
 // Google Benchmark: how a render's time grows with bands, rank of re-radiation, layers, depth,
-// lights and triangles. Each is a small render of one study with one number changed; the counters
-// are what was done in a second of the render proper, and what was needed before it.
+// pixels, lights and triangles. Each is a small render of one study with one number changed; the
+// counters are what was done in a second of the render proper, and what was needed before it.
 #include "host/device/device.h"
 #include "host/render/renderer.h"
 #include "host/scene/scene.h"
@@ -24,7 +24,7 @@ const Device& device() {
 }
 
 struct Study {
-    int bands = 64, rank = 0, layers = 1, depth = 8, lights = 1, sphere_rows = 0;
+    int bands = 64, rank = 0, layers = 1, depth = 8, lights = 1, sphere_rows = 0, side = 256;
     double alpha = 0.0;
 };
 
@@ -70,7 +70,7 @@ MeshShape sphere_mesh(int rows) {
 /// The reference study (tools/examples/reference-study.toml) with what `study` changes.
 Scene scene_of(const Study& study) {
     Scene scene;
-    scene.film.width = scene.film.height = 256;
+    scene.film.width = scene.film.height = study.side;
     scene.camera.origin = {0, 2.2, 6};
     scene.camera.target = {0, 0.9, 0};
     scene.integrator.max_depth = study.depth;
@@ -142,6 +142,9 @@ void rough_layers(benchmark::State& state) {
 void depth(benchmark::State& state) {
     run(state, {.depth = argument(state)});
 }
+void pixels(benchmark::State& state) {
+    run(state, {.bands = 16, .side = argument(state)});
+}
 void lights(benchmark::State& state) {
     run(state, {.bands = 16, .lights = argument(state)});
 }
@@ -157,6 +160,7 @@ BENCHMARK(rank)->DenseRange(0, 4)->Unit(benchmark::kMillisecond);
 BENCHMARK(smooth_layers)->DenseRange(0, 3)->Unit(benchmark::kMillisecond);
 BENCHMARK(rough_layers)->DenseRange(1, 2)->Unit(benchmark::kMillisecond);
 BENCHMARK(depth)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Arg(16)->Unit(benchmark::kMillisecond);
+BENCHMARK(pixels)->Arg(128)->Arg(256)->Arg(512)->Arg(1024)->Unit(benchmark::kMillisecond);
 BENCHMARK(lights)->Arg(1)->Arg(100)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(triangles)->Arg(1000)->Arg(100000)->Arg(1000000)->Arg(10000000)->Unit(
     benchmark::kMillisecond);

@@ -94,7 +94,10 @@ void measure(const Scene& scene, const Device& device, const Arguments& argument
                million / median(whole), median(ratios));
     for (const char* stage : {"generate", "intersect", "shade", "occlude", "gather", "film"})
         fmt::print(" {:.3f} |", last.stage_seconds.at(stage));
-    fmt::print("\n");
+    fmt::print(" {:.0f} | {:.2e} | {:.3f} | {:.3f} | {:.0f} |\n",
+               1e-6 * static_cast<double>(last.mapped_bytes) / million, last.relmse * whole.back(),
+               last.setup_seconds, last.build_seconds,
+               1e-6 * static_cast<double>(last.device_bytes));
 }
 
 int run(const Arguments& arguments) {
@@ -104,8 +107,10 @@ int run(const Arguments& arguments) {
     fmt::print("{}: {} spp, {} repetitions, medians; stages of the last one\n\n", arguments.scene,
                arguments.samples, arguments.repetitions);
     fmt::print("| bands | Embree alone, s | M rays/s | render, s | M paths/s | render : Embree | "
-               "generate | intersect | shade | occlude | gather | film |\n");
-    fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+               "generate | intersect | shade | occlude | gather | film | bytes mapped a path | "
+               "relMSE x s | set-up, s | kernels, s | device, MB |\n");
+    fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | "
+               "--- | --- | --- | --- |\n");
     for (const int bands : arguments.bands)
         measure(scene, device, arguments, bands);
     return 0;
