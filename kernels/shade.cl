@@ -380,12 +380,13 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
                     __global const LightRecord* lights, __global const float* tables,
                     __global const WalkPartRecord* walk_parts, __global WalkChunk* walk_chunks,
                     __global uint* walk_chunks_used, __global WalkVertexRecord* walk_vertices,
-                    EnvironmentRecord image, uint walk_capacity, uint path_count, uint capacity,
-                    uint depth, uint max_depth, uint min_depth, uint light_count, uint environment,
-                    uint sequence_blocks, uint seed) {
-    const uint path = (uint)get_global_id(0);
-    if (path >= path_count)
+                    __global const uint* live, EnvironmentRecord image, uint walk_capacity,
+                    uint live_count, uint capacity, uint depth, uint max_depth, uint min_depth,
+                    uint light_count, uint environment, uint sequence_blocks, uint seed) {
+    const uint item = (uint)get_global_id(0);
+    if (item >= live_count)
         return;
+    const uint path = live[item];
     const ShadeScene scene = {materials, layers, lobes, surfaces,    textures,
                               lights,    tables, image, light_count, environment};
     const uint slot = depth * capacity + path;
@@ -393,8 +394,6 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
 #if FEATURE_LIGHT_SAMPLING
     shadow_rays[slot].t_far = -1.0f;
 #endif
-    if (ray.t_far < 0.0f)
-        return;
     rays[path].t_far = -1.0f;
     const HitRecord hit = hits[path];
     PathState state = paths[path];

@@ -136,18 +136,25 @@ HitRecord record_of(const SurfaceHit& hit, const Owner& owner) {
     return r;
 }
 
-/// Runs work(i) for i below count on `threads` threads (0: all). Every ray is traced by itself,
-/// so results do not depend on how the batch is cut.
+/// Runs work(begin, end) for pieces of [0, count) on `threads` threads (0: all). Every ray is
+/// traced by itself, so results do not depend on how the batch is cut.
 template <typename Work>
-void for_each_ray(std::size_t count, int threads, const Work& work) {
+void for_each_chunk(std::size_t count, int threads, const Work& work) {
     constexpr std::size_t RAYS_A_TASK = 1024;
     tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
     arena.execute([&] {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, RAYS_A_TASK),
                           [&](const tbb::blocked_range<std::size_t>& range) {
-                              for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  work(i);
+                              work(range.begin(), range.end());
                           });
+    });
+}
+
+template <typename Work>
+void for_each_ray(std::size_t count, int threads, const Work& work) {
+    for_each_chunk(count, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            work(i);
     });
 }
 
@@ -163,6 +170,8 @@ struct Geometry::Implementation {
     void attach(const OwnedPrimitives<Primitive>& owned);
     void attach(const OwnedMesh& mesh);
     void check(const char* doing) const;
+    HitRecord nearest(const RayRecord& record, bool coherent) const;
+    void occlude(RayRecord& record) const;
     HitRecord describe(const RayRecord& record, const RTCRayHit& found) const;
     template <typename Primitive>
     HitRecord describe(const OwnedPrimitives<Primitive>& owned, unsigned int index, Ray ray,
@@ -284,35 +293,61 @@ HitRecord Geometry::Implementation::describe(const RayRecord& record,
     return record_of(hit, owned.owner);
 }
 
+HitRecord Geometry::Implementation::nearest(const RayRecord& record, bool coherent) const {
+    if (!is_traceable(record))
+        return no_hit();
+    RTCRayHit found{};
+    found.ray = embree_ray(record);
+    found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    embree_intersect(scene, found, coherent);
+    return found.hit.geomID == RTC_INVALID_GEOMETRY_ID ? no_hit() : describe(record, found);
+}
+
+void Geometry::Implementation::occlude(RayRecord& record) const {
+    if (is_traceable(record)) {
+        RTCRay ray = embree_ray(record);
+        embree_occluded(scene, ray);
+        if (ray.tfar >= 0.0f)
+            return;
+    }
+    record.t_far = -1.0f;
+}
+
 Geometry::Geometry(const Scene& scene) : implementation_(std::make_unique<Implementation>(scene)) {}
 Geometry::~Geometry() = default;
 
 void Geometry::intersect(std::span<const RayRecord> rays, std::span<HitRecord> hits, bool coherent,
                          int threads) const {
-    for_each_ray(rays.size(), threads, [&](std::size_t i) {
-        hits[i] = no_hit();
-        if (!is_traceable(rays[i]))
-            return;
-        RTCRayHit found{};
-        found.ray = embree_ray(rays[i]);
-        found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        embree_intersect(implementation_->scene, found, coherent);
-        if (found.hit.geomID != RTC_INVALID_GEOMETRY_ID)
-            hits[i] = implementation_->describe(rays[i], found);
+    for_each_ray(rays.size(), threads,
+                 [&](std::size_t i) { hits[i] = implementation_->nearest(rays[i], coherent); });
+}
+
+void Geometry::intersect(std::span<const RayRecord> rays, std::span<HitRecord> hits,
+                         std::span<const std::uint32_t> live, bool coherent, int threads) const {
+    for_each_ray(live.size(), threads, [&](std::size_t i) {
+        hits[live[i]] = implementation_->nearest(rays[live[i]], coherent);
     });
 }
 
 void Geometry::occlude(std::span<RayRecord> rays, int threads) const {
-    for_each_ray(rays.size(), threads, [&](std::size_t i) {
-        if (!is_traceable(rays[i])) {
-            rays[i].t_far = -1.0f;
-            return;
+    for_each_ray(rays.size(), threads, [&](std::size_t i) { implementation_->occlude(rays[i]); });
+}
+
+std::uint64_t Geometry::occlude(std::span<RayRecord> rays, std::span<const std::uint32_t> live,
+                                int threads) const {
+    std::atomic<std::uint64_t> active{0};
+    for_each_chunk(live.size(), threads, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t in_chunk = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            RayRecord& ray = rays[live[i]];
+            if (ray.t_far >= 0.0f) {
+                ++in_chunk;
+                implementation_->occlude(ray);
+            }
         }
-        RTCRay ray = embree_ray(rays[i]);
-        embree_occluded(implementation_->scene, ray);
-        if (ray.tfar < 0.0f)
-            rays[i].t_far = -1.0f;
+        active += in_chunk;
     });
+    return active;
 }
 
 std::size_t Geometry::triangle_count() const {

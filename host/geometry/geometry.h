@@ -4,6 +4,7 @@
 #include "kernels/shared.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -27,6 +28,12 @@ public:
                    int threads) const;
     /// Sets t_far = -1 for every ray that something blocks in (t_near, t_far).
     void occlude(std::span<RayRecord> rays, int threads) const;
+    /// The same for the rays whose places are in `live`, each once; the others are not touched.
+    void intersect(std::span<const RayRecord> rays, std::span<HitRecord> hits,
+                   std::span<const std::uint32_t> live, bool coherent, int threads) const;
+    /// `occlude` counts the rays that were active.
+    std::uint64_t occlude(std::span<RayRecord> rays, std::span<const std::uint32_t> live,
+                          int threads) const;
 
     std::size_t triangle_count() const;
     std::size_t memory_bytes() const; ///< what Embree reports

@@ -3,9 +3,9 @@
 #include "host/device/device.h"
 #include "host/device/program.h"
 #include "host/film/spectral_image.h"
+#include "host/render/ray_sink.h"
 #include "host/render/wavelength_plan.h"
 #include "host/scene/scene.h"
-#include "kernels/shared.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -13,7 +13,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -36,8 +35,7 @@ struct RenderOptions {
     std::filesystem::path checkpoint;     ///< empty: none is written or read
     double checkpoint_seconds = 60.0;     ///< at most so long between two of them
     bool resume = false;                  ///< go on from `checkpoint` where it exists
-    /// Sees every batch of rays before it is traced: what the tracing alone costs can be measured.
-    std::function<void(std::span<const RayRecord> rays, bool shadow, bool coherent)> on_rays = {};
+    RaySink on_rays = {};
 };
 
 /// The state of a render after one pass.

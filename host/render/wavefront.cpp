@@ -57,6 +57,7 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         const std::size_t slots = static_cast<std::size_t>(capacity_) * rounds_;
         rays_ = {device, capacity_};
         hits_ = {device, capacity_};
+        live_ = {device, capacity_};
         paths_ = {device, capacity_};
         vertices_ = {device, slots};
         const bool sampling = scene.features.area_lights || scene.features.delta_lights ||
@@ -142,7 +143,7 @@ void Wavefront::trace_paths(const Batch& batch) {
     if (scene_.features.walk)
         walk_chunks_used_.fill_zero();
     for (std::uint32_t depth = 0; depth < rounds_ && intersect(batch, depth); ++depth) {
-        shade(batch, depth);
+        shade(depth);
         occlude(batch, depth);
     }
 }
@@ -172,32 +173,56 @@ void Wavefront::generate(const Batch& batch) {
     wait_for_kernels(statistics_.generate_seconds);
 }
 
+/// The paths whose rays go on, of `all` or of those that did before: most end after few vertices,
+/// and the stages then work on what is left.
+std::span<const std::uint32_t> Wavefront::keep_live(std::span<std::uint32_t> live,
+                                                    std::span<const RayRecord> rays, bool all) {
+    const auto candidates = all ? static_cast<std::uint32_t>(rays.size()) : live_count_;
+    live_count_ = 0;
+    for (std::uint32_t i = 0; i < candidates; ++i) {
+        const std::uint32_t path = all ? i : live[i];
+        if (rays[path].t_far >= 0.0f)
+            live[live_count_++] = path;
+    }
+    return live.first(live_count_);
+}
+
+void Wavefront::show_rays(std::span<const RayRecord> rays, std::span<const std::uint32_t> live,
+                          bool shadow, bool coherent) const {
+    if (!settings_.on_rays)
+        return;
+    std::vector<RayRecord> shown;
+    for (const std::uint32_t path : live)
+        if (rays[path].t_far >= 0.0f)
+            shown.push_back(rays[path]);
+    settings_.on_rays(shown, shadow, coherent);
+}
+
 bool Wavefront::intersect(const Batch& batch, std::uint32_t depth) {
     const auto start = std::chrono::steady_clock::now();
     const auto rays = rays_.map(CL_MAP_READ, 0, batch.paths());
     const auto hits = hits_.map(CL_MAP_WRITE, 0, batch.paths());
-    const auto active = std::count_if(rays.span().begin(), rays.span().end(),
-                                      [](const RayRecord& ray) { return ray.t_far >= 0.0f; });
-    if (settings_.on_rays)
-        settings_.on_rays(rays.span(), false, depth == 0);
-    if (active > 0)
-        geometry_.intersect(rays.span(), hits.span(), depth == 0, settings_.threads);
-    statistics_.rays += static_cast<std::uint64_t>(active);
+    const auto all_live = live_.map(CL_MAP_READ | CL_MAP_WRITE, 0, batch.paths());
+    const auto live = keep_live(all_live.span(), rays.span(), depth == 0);
+    show_rays(rays.span(), live, false, depth == 0);
+    geometry_.intersect(rays.span(), hits.span(), live, depth == 0, settings_.threads);
+    statistics_.rays += live_count_;
     statistics_.mapped_bytes += rays.span().size_bytes() + hits.span().size_bytes();
     statistics_.intersect_seconds += seconds_since(start);
-    return active > 0;
+    return live_count_ > 0;
 }
 
-void Wavefront::shade(const Batch& batch, std::uint32_t depth) {
+void Wavefront::shade(std::uint32_t depth) {
     shade_.bind(rays_.buffer(), hits_.buffer(), paths_.buffer(), vertices_.buffer(),
                 shadow_rays_.buffer(), lobe_weights_.buffer(), colours_.buffer(),
                 materials_.buffer(), layers_.buffer(), lobes_.buffer(), surfaces_.buffer(),
                 textures_.buffer(), lights_.buffer(), tables_.buffer(), walk_parts_.buffer(),
                 walk_chunks_.buffer(), walk_chunks_used_.buffer(), walk_vertices_.buffer(),
-                scene_.image, static_cast<std::uint32_t>(walk_chunks_.size()), batch.paths(),
-                capacity_, depth, settings_.max_depth, settings_.min_depth, scene_.sampled_lights,
-                scene_.environment, settings_.sequence_blocks, settings_.seed);
-    shade_.launch(device_, batch.paths());
+                live_.buffer(), scene_.image, static_cast<std::uint32_t>(walk_chunks_.size()),
+                live_count_, capacity_, depth, settings_.max_depth, settings_.min_depth,
+                scene_.sampled_lights, scene_.environment, settings_.sequence_blocks,
+                settings_.seed);
+    shade_.launch(device_, live_count_);
     wait_for_kernels(statistics_.shade_seconds);
 }
 
@@ -207,13 +232,9 @@ void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
     const auto start = std::chrono::steady_clock::now();
     const auto rays = shadow_rays_.map(CL_MAP_READ | CL_MAP_WRITE,
                                        static_cast<std::size_t>(depth) * capacity_, batch.paths());
-    const auto active = std::count_if(rays.span().begin(), rays.span().end(),
-                                      [](const RayRecord& ray) { return ray.t_far >= 0.0f; });
-    if (settings_.on_rays)
-        settings_.on_rays(rays.span(), true, false);
-    if (active > 0)
-        geometry_.occlude(rays.span(), settings_.threads);
-    statistics_.rays += static_cast<std::uint64_t>(active);
+    const auto all_live = live_.map(CL_MAP_READ, 0, live_count_);
+    show_rays(rays.span(), all_live.span(), true, false);
+    statistics_.rays += geometry_.occlude(rays.span(), all_live.span(), settings_.threads);
     statistics_.mapped_bytes += 2 * rays.span().size_bytes(); // there and back
     statistics_.occlude_seconds += seconds_since(start);
 }

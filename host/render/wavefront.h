@@ -5,6 +5,7 @@
 #include "host/device/program.h"
 #include "host/geometry/geometry.h"
 #include "host/render/film_sums.h"
+#include "host/render/ray_sink.h"
 #include "host/render/scene_tables.h"
 
 #include <cstddef>
@@ -28,9 +29,6 @@ struct WavefrontStatistics {
 
 /// Chunks of events that walks have at first; a batch that needs more gets more.
 inline constexpr std::size_t walk_chunks_a_path = 4;
-
-/// Sees every batch of rays before it is traced, active or not (RayRecord::t_far).
-using RaySink = std::function<void(std::span<const RayRecord> rays, bool shadow, bool coherent)>;
 
 struct WavefrontSettings {
     std::uint32_t max_depth = 8, min_depth = 3;
@@ -83,7 +81,11 @@ private:
     bool walks_fit();
     void generate(const Batch& batch);
     bool intersect(const Batch& batch, std::uint32_t depth);
-    void shade(const Batch& batch, std::uint32_t depth);
+    std::span<const std::uint32_t> keep_live(std::span<std::uint32_t> live,
+                                             std::span<const RayRecord> rays, bool all);
+    void show_rays(std::span<const RayRecord> rays, std::span<const std::uint32_t> live,
+                   bool shadow, bool coherent) const;
+    void shade(std::uint32_t depth);
     void occlude(const Batch& batch, std::uint32_t depth);
     void gather(const Batch& batch);
     void add_to_film(const Batch& batch);
@@ -116,6 +118,8 @@ private:
     DeviceArray<float> tables_, colours_;
     DeviceArray<RayRecord> rays_, shadow_rays_;
     DeviceArray<HitRecord> hits_;
+    DeviceArray<std::uint32_t> live_; ///< the batch's paths that go on, the first `live_count_`
+    std::uint32_t live_count_ = 0;
     DeviceArray<PathState> paths_;
     DeviceArray<VertexRecord> vertices_;
     DeviceArray<float> lobe_weights_, radiance_;

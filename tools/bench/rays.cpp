@@ -12,13 +12,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 using namespace reradiant;
 
 namespace {
 
 struct Arguments {
-    std::string scene, device;
+    std::string scene, twin, device;
     std::vector<int> bands = {16, 64};
     unsigned samples = 16, repetitions = 5;
     int threads = 0;
@@ -76,17 +77,39 @@ double trace_seconds(const Geometry& geometry, const std::vector<RecordedRays>& 
     return seconds;
 }
 
+/// Renders the twin after every render of the scene: what it costs by comparison, the median.
+class Twin {
+public:
+    Twin(const Arguments& arguments, const Device& device) : device_(device) {
+        if (!arguments.twin.empty())
+            scene_ = load_scene(arguments.twin);
+    }
+    void take_turn(const RenderOptions& options, double whole_seconds) {
+        if (scene_)
+            ratios_.push_back(render(*scene_, device_, options).passes.back().seconds /
+                              whole_seconds);
+    }
+    std::string ratio() const { return scene_ ? fmt::format("{:.2f}", median(ratios_)) : "-"; }
+
+private:
+    const Device& device_;
+    std::optional<Scene> scene_;
+    std::vector<double> ratios_;
+};
+
 void measure(const Scene& scene, const Device& device, const Arguments& arguments, int bands) {
     const RenderOptions options = options_of(arguments, bands);
     const Geometry geometry(scene);
     const std::vector<RecordedRays> recorded = record_rays(scene, device, options); // warms up too
     std::vector<double> alone, whole, ratios;
+    Twin twin(arguments, device);
     RenderResult last;
     for (unsigned i = 0; i < arguments.repetitions; ++i) {
         alone.push_back(trace_seconds(geometry, recorded, arguments.threads));
         last = render(scene, device, options);
         whole.push_back(last.passes.back().seconds);
         ratios.push_back(whole.back() / alone.back());
+        twin.take_turn(options, whole.back());
     }
     const double million = 1e-6 * static_cast<double>(last.paths);
     fmt::print("| {} | {:.3f} | {:.1f} | {:.3f} | {:.2f} | {:.2f} |", bands, median(alone),
@@ -94,10 +117,10 @@ void measure(const Scene& scene, const Device& device, const Arguments& argument
                million / median(whole), median(ratios));
     for (const char* stage : {"generate", "intersect", "shade", "occlude", "gather", "film"})
         fmt::print(" {:.3f} |", last.stage_seconds.at(stage));
-    fmt::print(" {:.0f} | {:.2e} | {:.3f} | {:.3f} | {:.0f} |\n",
+    fmt::print(" {:.0f} | {:.2e} | {:.3f} | {:.3f} | {:.0f} | {} |\n",
                1e-6 * static_cast<double>(last.mapped_bytes) / million, last.relmse * whole.back(),
                last.setup_seconds, last.build_seconds,
-               1e-6 * static_cast<double>(last.device_bytes));
+               1e-6 * static_cast<double>(last.device_bytes), twin.ratio());
 }
 
 int run(const Arguments& arguments) {
@@ -108,9 +131,10 @@ int run(const Arguments& arguments) {
                arguments.samples, arguments.repetitions);
     fmt::print("| bands | Embree alone, s | M rays/s | render, s | M paths/s | render : Embree | "
                "generate | intersect | shade | occlude | gather | film | bytes mapped a path | "
-               "relMSE x s | set-up, s | kernels, s | device, MB |\n");
-    fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | "
-               "--- | --- | --- | --- |\n");
+               "relMSE x s | set-up, s | kernels, s | device, MB | twin : render |\n");
+    fmt::print(
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | "
+        "--- | --- | --- | --- |\n");
     for (const int bands : arguments.bands)
         measure(scene, device, arguments, bands);
     return 0;
@@ -122,6 +146,7 @@ int main(int argc, char** argv) {
     Arguments arguments;
     CLI::App app{"The cost of a render against that of its rays alone"};
     app.add_option("scene", arguments.scene, "scene file")->required();
+    app.add_option("--twin", arguments.twin, "scene whose cost is compared with the first's");
     app.add_option("--bands", arguments.bands, "numbers of bands")->delimiter(',');
     app.add_option("--spp", arguments.samples, "samples a pixel")->check(CLI::PositiveNumber);
     app.add_option("--repeat", arguments.repetitions, "repetitions")->check(CLI::PositiveNumber);
