@@ -14,7 +14,7 @@ __kernel void generate(__global RayRecord* rays, __global PathState* paths, Came
         return;
     const uint pixel = first_pixel + path / samples;
     const uint sample = first_sample + path % samples;
-    const Random4 u = path_numbers(pixel, sample, 0u, sequence_blocks, seed);
+    const Random4 u = path_numbers(pixel, sample, 0u, sequence_blocks, seed).first;
     const CameraRay camera_space = camera_ray(camera, (real)(pixel % camera.width) + u.b,
                                               (real)(pixel / camera.width) + u.c, u.a, u.d);
     RayRecord ray;

@@ -62,9 +62,9 @@ DEVICE_FUNCTION LightSample lights_sample_sphere(LightRecord light, Vec3 from, r
     const real one_minus_cos = u1 * cone;
     const real cosine = REAL(1.0) - one_minus_cos;
     const real sine = sqrt(one_minus_cos * (REAL(2.0) - one_minus_cos));
-    const real phi = REAL(2.0) * PI_REAL * u2;
+    const Vec3 around = sampling_circle(u2);
     const Frame frame = sampling_frame(vec3_scale(to_center, REAL(1.0) / d));
-    s.direction = sampling_to_world(frame, vec3(sine * cos(phi), sine * sin(phi), cosine));
+    s.direction = sampling_to_world(frame, vec3(sine * around.x, sine * around.y, cosine));
     const real miss2 = d * sine * d * sine;
     s.distance = d * cosine - sqrt(fmax(REAL(0.0), square(light.radius_or_area) - miss2));
     s.pdf = REAL(1.0) / (REAL(2.0) * PI_REAL * cone);

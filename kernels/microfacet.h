@@ -4,6 +4,7 @@
 #define RERADIANT_MICROFACET_H
 
 #include "kernels/portable.h"
+#include "kernels/sampling.h"
 
 #define MICROFACET_BLINN 0
 #define MICROFACET_BECKMANN 1
@@ -185,8 +186,8 @@ DEVICE_FUNCTION Vec3 microfacet_sample_ggx(real alpha, Vec3 wo, real u1, real u2
     Vec3 v = vec3_normalise(vec3(alpha * wo.x, alpha * wo.y, wo.z));
     real z = REAL(1.0) - u1 * (REAL(1.0) + v.z);
     real sin_z = sqrt(fmax((REAL(1.0) - z) * (REAL(1.0) + z), REAL(0.0)));
-    real phi = REAL(2.0) * PI_REAL * u2;
-    Vec3 n = vec3(sin_z * cos(phi) + v.x, sin_z * sin(phi) + v.y, z + v.z);
+    Vec3 around = sampling_circle(u2);
+    Vec3 n = vec3(sin_z * around.x + v.x, sin_z * around.y + v.y, z + v.z);
     return vec3_normalise(vec3(alpha * n.x, alpha * n.y, fmax(n.z, REAL(1e-30))));
 }
 
@@ -217,8 +218,8 @@ DEVICE_FUNCTION Vec3 microfacet_sample(int distribution, real alpha, Vec3 wo, re
         // h.z^(e + 2) = 1 - u1 and e + 2 = 2 / alpha^2
         real log_cos2 = alpha * alpha * log1p(-fmin(u1, REAL(0.99999994)));
         real sin_h = sqrt(-expm1(log_cos2));
-        real phi = REAL(2.0) * PI_REAL * u2;
-        return vec3(sin_h * cos(phi), sin_h * sin(phi), exp(REAL(0.5) * log_cos2));
+        Vec3 around = sampling_circle(u2);
+        return vec3(sin_h * around.x, sin_h * around.y, exp(REAL(0.5) * log_cos2));
     }
 }
 

@@ -43,28 +43,54 @@ DEVICE_FUNCTION uint sequence_second_reversed(uint index) {
     return index ^ ((index >> 16) & 0x0000ffffu);
 }
 
-/// Four numbers in [0, 1) for one dimension block: (b, c) and (a, d) are points of (0, 2)-sequences
-/// whose prefixes of 2^k points are shuffled among themselves.
-DEVICE_FUNCTION Random4 sequence_4(uint pixel, uint sample, uint dimension, uint seed) {
-    const RandomWords keys = random_words(pixel, 2u * dimension + (sample & 1u), 0x5e90e2ceu, seed);
+typedef struct {
+    Random4 first, second;
+} RandomBlocks;
+
+/// Numbers in [0, 1) of a dimension block and of the next: in each (b, c) and (a, d) are points of
+/// (0, 2)-sequences whose prefixes of 2^k points are shuffled among themselves. Eight coordinates
+/// in one loop without branches become one of vectors.
+DEVICE_FUNCTION RandomBlocks sequence_blocks_2(uint pixel, uint sample, uint dimension, uint seed) {
+    const uint half_dimension = 2u * dimension + (sample & 1u);
     const uint index = sequence_reversed(sample >> 1);
-    const uint first = sequence_scrambled(index, keys.x);
-    const uint second = sequence_scrambled(index, keys.w);
-    Random4 r;
-    r.b = random_unit(sequence_scrambled(first, keys.y));
-    r.c = random_unit(sequence_scrambled(sequence_second_reversed(first), keys.z));
-    r.a = random_unit(sequence_scrambled(second, keys.x * 0x9e3779b9u + 1u));
-    r.d = random_unit(
-        sequence_scrambled(sequence_second_reversed(second), keys.y * 0x85ebca6bu + 1u));
-    return r;
+    const RandomWords one = random_words(pixel, half_dimension, 0x5e90e2ceu, seed);
+    const RandomWords two = random_words(pixel, half_dimension + 2u, 0x5e90e2ceu, seed);
+    const uint shuffle[8] = {one.x, one.x, one.w, one.w, two.x, two.x, two.w, two.w};
+    const uint scramble[8] = {one.y, one.z, one.x * 0x9e3779b9u + 1u, one.y * 0x85ebca6bu + 1u,
+                              two.y, two.z, two.x * 0x9e3779b9u + 1u, two.y * 0x85ebca6bu + 1u};
+    real numbers[8];
+    for (uint k = 0u; k < 8u; ++k) {
+        const uint shuffled = sequence_scrambled(index, shuffle[k]);
+        const uint second = sequence_second_reversed(shuffled);
+        numbers[k] =
+            random_unit(sequence_scrambled((k & 1u) != 0u ? second : shuffled, scramble[k]));
+    }
+    RandomBlocks blocks;
+    blocks.first.b = numbers[0];
+    blocks.first.c = numbers[1];
+    blocks.first.a = numbers[2];
+    blocks.first.d = numbers[3];
+    blocks.second.b = numbers[4];
+    blocks.second.c = numbers[5];
+    blocks.second.a = numbers[6];
+    blocks.second.d = numbers[7];
+    return blocks;
 }
 
-/// The numbers of a dimension block of a path: from the sequence in the first `sequence_blocks`,
-/// else independent.
-DEVICE_FUNCTION Random4 path_numbers(uint pixel, uint sample, uint dimension, uint sequence_blocks,
-                                     uint seed) {
-    return dimension < sequence_blocks ? sequence_4(pixel, sample, dimension, seed)
-                                       : random_4(pixel, sample, dimension, seed);
+DEVICE_FUNCTION Random4 sequence_4(uint pixel, uint sample, uint dimension, uint seed) {
+    return sequence_blocks_2(pixel, sample, dimension, seed).first;
+}
+
+/// The numbers of a dimension block of a path and of the next: from the sequence where both are
+/// among the first `sequence_blocks`, else independent.
+DEVICE_FUNCTION RandomBlocks path_numbers(uint pixel, uint sample, uint dimension,
+                                          uint sequence_blocks, uint seed) {
+    RandomBlocks blocks;
+    if (dimension + 1u < sequence_blocks)
+        return sequence_blocks_2(pixel, sample, dimension, seed);
+    blocks.first = random_4(pixel, sample, dimension, seed);
+    blocks.second = random_4(pixel, sample, dimension + 1u, seed);
+    return blocks;
 }
 
 KERNELS_END

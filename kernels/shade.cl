@@ -429,10 +429,9 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
     }
 #endif
 
-    const Random4 u_light =
+    const RandomBlocks numbers =
         path_numbers(state.pixel, state.sample, 2u * depth + 1u, sequence_blocks, seed);
-    const Random4 u =
-        path_numbers(state.pixel, state.sample, 2u * depth + 2u, sequence_blocks, seed);
+    const Random4 u_light = numbers.first, u = numbers.second;
     state.vertex_count = depth + 1u;
 #if FEATURE_WALK
     if (stack.record.walk != NO_INDEX) {

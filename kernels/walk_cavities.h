@@ -8,6 +8,7 @@
 #define RERADIANT_WALK_CAVITIES_H
 
 #include "kernels/portable.h"
+#include "kernels/sampling.h"
 #include "kernels/shared.h"
 #include "kernels/walk_facets.h"
 
@@ -90,9 +91,10 @@ DEVICE_FUNCTION Vec3 walk_cavity_departure(WalkSurface surface, real u1, real u2
         const uint k = to_dense ? cell - thin : cell;
         const real low = side.edges[k], high = side.edges[k + 1u];
         const real c2 = fmin(low * low + (high - low) * (high + low) * u2, REAL(1.0));
-        const real s = sqrt(REAL(1.0) - c2), phi = REAL(2.0) * PI_REAL * u3;
+        const real s = sqrt(REAL(1.0) - c2);
+        const Vec3 around = sampling_circle(u3);
         *passed = to_dense != walk_cavity_is_dense(surface);
-        return vec3(s * cos(phi), s * sin(phi), sqrt(c2));
+        return vec3(s * around.x, s * around.y, sqrt(c2));
     }
 }
 

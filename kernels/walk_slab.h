@@ -16,9 +16,9 @@ Vec3 walk_deflected(Vec3 direction, float g, float u1, float u2) {
     const float s = (1.0f - g) * (1.0f + g) / d;
     const float fall = fmin((1.0f - g) * (1.0f - u1) * (s + (1.0f - g)) / d, 2.0f);
     const float sine = sqrt(fall * (2.0f - fall));
-    const float phi = 2.0f * PI_REAL * u2;
+    const Vec3 around = sampling_circle(u2);
     return vec3_normalise(sampling_to_world(sampling_frame(direction),
-                                            vec3(sine * cos(phi), sine * sin(phi), 1.0f - fall)));
+                                            vec3(sine * around.x, sine * around.y, 1.0f - fall)));
 }
 
 /// Connects a scattering event at a height (0: top of the slab, 1: its end) to the light that

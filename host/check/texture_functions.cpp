@@ -42,6 +42,9 @@ std::vector<CheckedFunction> sampling_functions() {
                          const Vec3 world = sampling_to_world(frame, CHECK_VECTOR(3));
                          const Vec3 own = sampling_to_local(frame, CHECK_VECTOR(3));
                          CHECK_RESULT(0, world); CHECK_RESULT(3, own)),
+            CHECKED_FUNCTION("sampling_circle", "kernels/sampling.h", (Arguments{unit()}), 3,
+                             unit_vector, const Vec3 p = sampling_circle(in[0]);
+                             CHECK_RESULT(0, p)),
             CHECKED_FUNCTION("sampling_disk", "kernels/sampling.h", (Arguments{unit(), unit()}), 3,
                              unit_vector, const Vec3 p = sampling_disk(in[0], in[1]);
                              CHECK_RESULT(0, p)),

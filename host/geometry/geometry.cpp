@@ -161,7 +161,7 @@ void for_each_ray(std::size_t count, int threads, const Work& work) {
 } // namespace
 
 struct Geometry::Implementation {
-    explicit Implementation(const Scene& scene);
+    Implementation(const Scene& scene, bool wants_parameters);
     ~Implementation();
     Implementation(const Implementation&) = delete;
     Implementation& operator=(const Implementation&) = delete;
@@ -178,6 +178,7 @@ struct Geometry::Implementation {
                        double t) const;
 
     Surfaces surfaces;
+    bool parameters;
     std::vector<const void*> sources; ///< by Embree's geometry number: what it was made of
     std::atomic<std::ptrdiff_t> bytes{0};
     std::size_t triangles = 0;
@@ -186,7 +187,8 @@ struct Geometry::Implementation {
     RTCScene scene = nullptr;
 };
 
-Geometry::Implementation::Implementation(const Scene& scene_in) : surfaces(surfaces_of(scene_in)) {
+Geometry::Implementation::Implementation(const Scene& scene_in, bool wants_parameters)
+    : surfaces(surfaces_of(scene_in)), parameters(wants_parameters) {
     device = rtcNewDevice(nullptr);
     check("start");
     rtcSetDeviceMemoryMonitorFunction(
@@ -270,7 +272,10 @@ HitRecord Geometry::Implementation::describe(const OwnedPrimitives<Primitive>& o
     const Primitive& primitive = owned.primitives[index];
     // Embree keeps t in single precision; the primitive knows it better.
     const double exact = primitive.intersect(ray);
-    return record_of(primitive.describe(ray, exact >= 0.0 ? exact : t), owned.owners[index]);
+    SurfaceHit hit = primitive.describe(ray, exact >= 0.0 ? exact : t);
+    if (parameters)
+        primitive.set_parameters(hit);
+    return record_of(hit, owned.owners[index]);
 }
 
 HitRecord Geometry::Implementation::describe(const RayRecord& record,
@@ -313,7 +318,8 @@ void Geometry::Implementation::occlude(RayRecord& record) const {
     record.t_far = -1.0f;
 }
 
-Geometry::Geometry(const Scene& scene) : implementation_(std::make_unique<Implementation>(scene)) {}
+Geometry::Geometry(const Scene& scene, bool wants_parameters)
+    : implementation_(std::make_unique<Implementation>(scene, wants_parameters)) {}
 Geometry::~Geometry() = default;
 
 void Geometry::intersect(std::span<const RayRecord> rays, std::span<HitRecord> hits, bool coherent,

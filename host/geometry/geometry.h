@@ -15,8 +15,9 @@ namespace reradiant {
 class Geometry {
 public:
     /// Throws an input Error that names shape and primitive for NaN, Inf, coordinates beyond
-    /// 1e18, indices out of range and degenerate sizes (CASES 6, 7).
-    explicit Geometry(const Scene& scene);
+    /// 1e18, indices out of range and degenerate sizes (CASES 6, 7). Without `wants_parameters`
+    /// hits on shapes that are no meshes have u = v = 0.
+    explicit Geometry(const Scene& scene, bool wants_parameters = true);
     ~Geometry();
     Geometry(const Geometry&) = delete;
     Geometry& operator=(const Geometry&) = delete;

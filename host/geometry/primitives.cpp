@@ -75,8 +75,12 @@ double SpherePrimitive::intersect(const Ray& ray) const {
 SurfaceHit SpherePrimitive::describe(const Ray& ray, double t) const {
     const Vec3 normal = vec3_normalise(vec3_sub(ray.at(t), center));
     const Vec3 position = vec3_add(center, vec3_scale(normal, radius));
-    return flat_hit(position, normal, azimuth_share(normal.y, normal.x),
-                    std::acos(std::clamp(normal.z, -1.0, 1.0)) / PI, t);
+    return flat_hit(position, normal, 0.0, 0.0, t);
+}
+
+void SpherePrimitive::set_parameters(SurfaceHit& hit) const {
+    hit.u = azimuth_share(hit.normal.y, hit.normal.x);
+    hit.v = std::acos(std::clamp(hit.normal.z, -1.0, 1.0)) / PI;
 }
 
 Box SpherePrimitive::bounds() const {
@@ -109,7 +113,13 @@ SurfaceHit RectanglePrimitive::describe(const Ray& ray, double t) const {
     const double u = std::clamp(vec3_dot(p, dual_u), -0.5, 0.5);
     const double v = std::clamp(vec3_dot(p, dual_v), -0.5, 0.5);
     const Vec3 offset = vec3_add(vec3_scale(edge_u, u), vec3_scale(edge_v, v));
-    return flat_hit(vec3_add(center, offset), normal, u + 0.5, v + 0.5, t);
+    return flat_hit(vec3_add(center, offset), normal, 0.0, 0.0, t);
+}
+
+void RectanglePrimitive::set_parameters(SurfaceHit& hit) const {
+    const Vec3 p = vec3_sub(hit.position, center);
+    hit.u = std::clamp(vec3_dot(p, dual_u) + 0.5, 0.0, 1.0);
+    hit.v = std::clamp(vec3_dot(p, dual_v) + 0.5, 0.0, 1.0);
 }
 
 Box RectanglePrimitive::bounds() const {
@@ -134,10 +144,14 @@ double DiskPrimitive::intersect(const Ray& ray) const {
 SurfaceHit DiskPrimitive::describe(const Ray& ray, double t) const {
     const Vec3 p = vec3_sub(ray.at(t), center);
     const Vec3 in_plane = vec3_sub(p, vec3_scale(normal, vec3_dot(p, normal)));
-    const double x = vec3_dot(in_plane, tangent);
-    const double y = vec3_dot(in_plane, vec3_cross(normal, tangent));
-    return flat_hit(vec3_add(center, in_plane), normal, std::min(std::hypot(x, y) / radius, 1.0),
-                    azimuth_share(y, x), t);
+    return flat_hit(vec3_add(center, in_plane), normal, 0.0, 0.0, t);
+}
+
+void DiskPrimitive::set_parameters(SurfaceHit& hit) const {
+    const Vec3 p = vec3_sub(hit.position, center);
+    const double x = vec3_dot(p, tangent), y = vec3_dot(p, vec3_cross(normal, tangent));
+    hit.u = std::min(std::hypot(x, y) / radius, 1.0);
+    hit.v = azimuth_share(y, x);
 }
 
 Box DiskPrimitive::bounds() const {

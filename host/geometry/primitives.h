@@ -37,6 +37,7 @@ struct Box {
 /// What is not made of triangles is intersected in double precision: then the surface that rays
 /// meet is the one that positions are computed on, and a hit's error is that of rounding its
 /// coordinates to single precision. `intersect` returns the nearest t in (t_near, t_far), or -1.
+/// `describe` leaves u and v at zero: `set_parameters` has the angles, for who needs them.
 
 struct SpherePrimitive {
     Vec3 center;
@@ -45,6 +46,7 @@ struct SpherePrimitive {
     double intersect(const Ray& ray) const;
     /// u = azimuth about z over 2 pi, v = angle from z over pi; the normal points outward.
     SurfaceHit describe(const Ray& ray, double t) const;
+    void set_parameters(SurfaceHit& hit) const;
     Box bounds() const;
 };
 
@@ -54,6 +56,7 @@ struct RectanglePrimitive {
 
     double intersect(const Ray& ray) const;
     SurfaceHit describe(const Ray& ray, double t) const;
+    void set_parameters(SurfaceHit& hit) const;
     Box bounds() const;
 
     Vec3 center, edge_u, edge_v;
@@ -67,6 +70,7 @@ struct DiskPrimitive {
 
     double intersect(const Ray& ray) const;
     SurfaceHit describe(const Ray& ray, double t) const;
+    void set_parameters(SurfaceHit& hit) const;
     Box bounds() const;
 
     Vec3 center, normal, tangent;

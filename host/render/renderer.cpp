@@ -256,7 +256,7 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
         plan_wavelengths(scene, options.bands.value_or(film_bands(scene)), options.wavelengths);
     check_memory(scene, result.plan, options);
     const SceneTables tables = prepare_tables(scene, result.plan, options);
-    const Geometry geometry(scene);
+    const Geometry geometry(scene, tables.features.textures || tables.features.reflectance_image);
     Wavefront wavefront(device, geometry, tables, result.plan,
                         {static_cast<std::uint32_t>(scene.integrator.max_depth),
                          static_cast<std::uint32_t>(scene.integrator.min_depth), options.seed,

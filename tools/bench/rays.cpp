@@ -99,7 +99,7 @@ private:
 
 void measure(const Scene& scene, const Device& device, const Arguments& arguments, int bands) {
     const RenderOptions options = options_of(arguments, bands);
-    const Geometry geometry(scene);
+    const Geometry geometry(scene, !scene.textures.empty()); // as the renderer has it
     const std::vector<RecordedRays> recorded = record_rays(scene, device, options); // warms up too
     std::vector<double> alone, whole, ratios;
     Twin twin(arguments, device);
