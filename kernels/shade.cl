@@ -380,9 +380,10 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
                     __global const LightRecord* lights, __global const float* tables,
                     __global const WalkPartRecord* walk_parts, __global WalkChunk* walk_chunks,
                     __global uint* walk_chunks_used, __global WalkVertexRecord* walk_vertices,
-                    __global const uint* live, EnvironmentRecord image, uint walk_capacity,
-                    uint live_count, uint capacity, uint depth, uint max_depth, uint min_depth,
-                    uint light_count, uint environment, uint sequence_blocks, uint seed) {
+                    __global const uint* live, __global uchar* goes_on, EnvironmentRecord image,
+                    uint walk_capacity, uint live_count, uint capacity, uint depth, uint max_depth,
+                    uint min_depth, uint light_count, uint environment, uint sequence_blocks,
+                    uint seed) {
     const uint item = (uint)get_global_id(0);
     if (item >= live_count)
         return;
@@ -394,7 +395,7 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
 #if FEATURE_LIGHT_SAMPLING
     shadow_rays[slot].t_far = -1.0f;
 #endif
-    rays[path].t_far = -1.0f;
+    goes_on[item] = 0;
     const HitRecord hit = hits[path];
     PathState state = paths[path];
     __global float* colour = colours;
@@ -443,8 +444,11 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
         walk.writer = walk_writer(walk_chunks, walk_chunks_used, walk_capacity);
         walk.random = walk_random(state.pixel, state.sample,
                                   WALK_DIMENSION + depth * WALK_DIMENSIONS_PER_VERTEX, seed);
-        rays[path] = walk_from_here(&scene, point, &walk, u_light, u.d, depth, min_depth, &vertex,
-                                    walk_vertices + slot, &state, shadow_rays + slot, colour);
+        const RayRecord next =
+            walk_from_here(&scene, point, &walk, u_light, u.d, depth, min_depth, &vertex,
+                           walk_vertices + slot, &state, shadow_rays + slot, colour);
+        rays[path] = next;
+        goes_on[item] = next.t_far >= 0.0f;
         vertices[slot] = vertex;
         paths[path] = state;
         return;
@@ -460,8 +464,10 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
     state.throughput *= choice.albedo;
     const real survival = depth + 1u < min_depth ? 1.0f : fmin(1.0f, fmax(state.throughput, 0.05f));
     if (u.d < survival) {
-        rays[path] = sample_direction(point, stack, &choice, u, survival, &vertex, next_lobes,
-                                      &state.bsdf_pdf);
+        const RayRecord next = sample_direction(point, stack, &choice, u, survival, &vertex,
+                                                next_lobes, &state.bsdf_pdf);
+        rays[path] = next;
+        goes_on[item] = next.t_far >= 0.0f;
         state.throughput /= survival;
     }
     vertices[slot] = vertex;

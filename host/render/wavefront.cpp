@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <numeric>
 
 namespace reradiant {
 
@@ -58,6 +59,7 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         rays_ = {device, capacity_};
         hits_ = {device, capacity_};
         live_ = {device, capacity_};
+        goes_on_ = {device, capacity_};
         paths_ = {device, capacity_};
         vertices_ = {device, slots};
         const bool sampling = scene.features.area_lights || scene.features.delta_lights ||
@@ -173,18 +175,22 @@ void Wavefront::generate(const Batch& batch) {
     wait_for_kernels(statistics_.generate_seconds);
 }
 
-/// The paths whose rays go on, of `all` or of those that did before: most end after few vertices,
-/// and the stages then work on what is left.
-std::span<const std::uint32_t> Wavefront::keep_live(std::span<std::uint32_t> live,
-                                                    std::span<const RayRecord> rays, bool all) {
-    const auto candidates = all ? static_cast<std::uint32_t>(rays.size()) : live_count_;
-    live_count_ = 0;
-    for (std::uint32_t i = 0; i < candidates; ++i) {
-        const std::uint32_t path = all ? i : live[i];
-        if (rays[path].t_far >= 0.0f)
-            live[live_count_++] = path;
+/// Lists the paths that go on: most end after few vertices, and the stages then work on what is
+/// left.
+void Wavefront::keep_live(const Batch& batch, std::uint32_t depth) {
+    const auto live = live_.map(CL_MAP_READ | CL_MAP_WRITE, 0, batch.paths());
+    if (depth == 0) {
+        std::iota(live.span().begin(), live.span().end(), 0u);
+        live_count_ = batch.paths();
+        return;
     }
-    return live.first(live_count_);
+    const auto goes_on = goes_on_.map(CL_MAP_READ, 0, live_count_);
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < live_count_; ++i) { // without branches
+        live.span()[kept] = live.span()[i];
+        kept += goes_on.span()[i];
+    }
+    live_count_ = kept;
 }
 
 void Wavefront::show_rays(std::span<const RayRecord> rays, std::span<const std::uint32_t> live,
@@ -200,16 +206,18 @@ void Wavefront::show_rays(std::span<const RayRecord> rays, std::span<const std::
 
 bool Wavefront::intersect(const Batch& batch, std::uint32_t depth) {
     const auto start = std::chrono::steady_clock::now();
+    keep_live(batch, depth);
+    if (live_count_ == 0)
+        return false;
     const auto rays = rays_.map(CL_MAP_READ, 0, batch.paths());
     const auto hits = hits_.map(CL_MAP_WRITE, 0, batch.paths());
-    const auto all_live = live_.map(CL_MAP_READ | CL_MAP_WRITE, 0, batch.paths());
-    const auto live = keep_live(all_live.span(), rays.span(), depth == 0);
-    show_rays(rays.span(), live, false, depth == 0);
-    geometry_.intersect(rays.span(), hits.span(), live, depth == 0, settings_.threads);
+    const auto live = live_.map(CL_MAP_READ, 0, live_count_);
+    show_rays(rays.span(), live.span(), false, depth == 0);
+    geometry_.intersect(rays.span(), hits.span(), live.span(), depth == 0, settings_.threads);
     statistics_.rays += live_count_;
     statistics_.mapped_bytes += rays.span().size_bytes() + hits.span().size_bytes();
     statistics_.intersect_seconds += seconds_since(start);
-    return live_count_ > 0;
+    return true;
 }
 
 void Wavefront::shade(std::uint32_t depth) {
@@ -218,10 +226,10 @@ void Wavefront::shade(std::uint32_t depth) {
                 materials_.buffer(), layers_.buffer(), lobes_.buffer(), surfaces_.buffer(),
                 textures_.buffer(), lights_.buffer(), tables_.buffer(), walk_parts_.buffer(),
                 walk_chunks_.buffer(), walk_chunks_used_.buffer(), walk_vertices_.buffer(),
-                live_.buffer(), scene_.image, static_cast<std::uint32_t>(walk_chunks_.size()),
-                live_count_, capacity_, depth, settings_.max_depth, settings_.min_depth,
-                scene_.sampled_lights, scene_.environment, settings_.sequence_blocks,
-                settings_.seed);
+                live_.buffer(), goes_on_.buffer(), scene_.image,
+                static_cast<std::uint32_t>(walk_chunks_.size()), live_count_, capacity_, depth,
+                settings_.max_depth, settings_.min_depth, scene_.sampled_lights, scene_.environment,
+                settings_.sequence_blocks, settings_.seed);
     shade_.launch(device_, live_count_);
     wait_for_kernels(statistics_.shade_seconds);
 }
@@ -232,9 +240,9 @@ void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
     const auto start = std::chrono::steady_clock::now();
     const auto rays = shadow_rays_.map(CL_MAP_READ | CL_MAP_WRITE,
                                        static_cast<std::size_t>(depth) * capacity_, batch.paths());
-    const auto all_live = live_.map(CL_MAP_READ, 0, live_count_);
-    show_rays(rays.span(), all_live.span(), true, false);
-    statistics_.rays += geometry_.occlude(rays.span(), all_live.span(), settings_.threads);
+    const auto live = live_.map(CL_MAP_READ, 0, live_count_);
+    show_rays(rays.span(), live.span(), true, false);
+    statistics_.rays += geometry_.occlude(rays.span(), live.span(), settings_.threads);
     statistics_.mapped_bytes += 2 * rays.span().size_bytes(); // there and back
     statistics_.occlude_seconds += seconds_since(start);
 }
@@ -322,10 +330,10 @@ std::size_t Wavefront::device_bytes() const {
     return materials_.bytes() + layers_.bytes() + lobes_.bytes() + surfaces_.bytes() +
            walk_parts_.bytes() + walk_chunks_.bytes() + walk_vertices_.bytes() + textures_.bytes() +
            hero_lanes_.bytes() + hero_weights_.bytes() + colours_.bytes() + lights_.bytes() +
-           tables_.bytes() + rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() + paths_.bytes() +
-           vertices_.bytes() + lobe_weights_.bytes() + radiance_.bytes() +
-           film_float_count() * sizeof(float) + film_bands_.bytes() + film_weights_.bytes() +
-           y_weights_.bytes();
+           tables_.bytes() + rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() + live_.bytes() +
+           goes_on_.bytes() + paths_.bytes() + vertices_.bytes() + lobe_weights_.bytes() +
+           radiance_.bytes() + film_float_count() * sizeof(float) + film_bands_.bytes() +
+           film_weights_.bytes() + y_weights_.bytes();
 }
 
 } // namespace reradiant

@@ -81,8 +81,7 @@ private:
     bool walks_fit();
     void generate(const Batch& batch);
     bool intersect(const Batch& batch, std::uint32_t depth);
-    std::span<const std::uint32_t> keep_live(std::span<std::uint32_t> live,
-                                             std::span<const RayRecord> rays, bool all);
+    void keep_live(const Batch& batch, std::uint32_t depth);
     void show_rays(std::span<const RayRecord> rays, std::span<const std::uint32_t> live,
                    bool shadow, bool coherent) const;
     void shade(std::uint32_t depth);
@@ -119,6 +118,7 @@ private:
     DeviceArray<RayRecord> rays_, shadow_rays_;
     DeviceArray<HitRecord> hits_;
     DeviceArray<std::uint32_t> live_; ///< the batch's paths that go on, the first `live_count_`
+    DeviceArray<std::uint8_t> goes_on_; ///< of the live ones, whether they do
     std::uint32_t live_count_ = 0;
     DeviceArray<PathState> paths_;
     DeviceArray<VertexRecord> vertices_;
