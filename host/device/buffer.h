@@ -4,12 +4,36 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <span>
 
 namespace reradiant {
 
-/// An array that host and device use in turn. On devices that share memory with the host the
-/// mapping moves no data (CL_MEM_ALLOC_HOST_PTR).
+/// A buffer, in memory that the host reaches without mapping where the device has such.
+struct DeviceStorage {
+    DeviceStorage(const Device& device, std::size_t bytes) : context(device.context()) {
+        if (device.info().shares_memory)
+            shared =
+                clSVMAlloc(context(), CL_MEM_READ_WRITE | CL_MEM_SVM_FINE_GRAIN_BUFFER, bytes, 0);
+        buffer = shared != nullptr
+                     ? cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, shared)
+                     : cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
+    }
+    ~DeviceStorage() {
+        buffer = cl::Buffer(); // before what it lies in
+        if (shared != nullptr)
+            clSVMFree(context(), shared);
+    }
+    DeviceStorage(const DeviceStorage&) = delete;
+    DeviceStorage& operator=(const DeviceStorage&) = delete;
+
+    cl::Context context;
+    void* shared = nullptr;
+    cl::Buffer buffer;
+};
+
+/// An array that host and device use in turn. On devices that share memory with the host no data
+/// moves. An array may go only when nothing that uses it is queued.
 template <typename T>
 class DeviceArray {
 public:
@@ -18,21 +42,21 @@ public:
     DeviceArray(const Device& device, std::size_t count) : device_(&device), count_(count) {
         const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(T);
         check_allocation(device, bytes);
-        buffer_ = cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
+        storage_ = std::make_unique<DeviceStorage>(device, bytes);
     }
     DeviceArray(const Device& device, std::span<const T> values)
         : DeviceArray(device, values.size()) {
         if (!values.empty())
-            device.queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, values.size_bytes(),
+            device.queue().enqueueWriteBuffer(buffer(), CL_TRUE, 0, values.size_bytes(),
                                               values.data());
     }
 
-    const cl::Buffer& buffer() const { return buffer_; }
+    const cl::Buffer& buffer() const { return storage_->buffer; }
     std::size_t size() const { return count_; }
     std::size_t bytes() const { return count_ * sizeof(T); }
 
     void fill_zero() const {
-        device_->queue().enqueueFillBuffer(buffer_, 0, 0,
+        device_->queue().enqueueFillBuffer(buffer(), 0, 0,
                                            std::max<std::size_t>(count_, 1) * sizeof(T));
     }
 
@@ -40,21 +64,31 @@ public:
     class Mapping {
     public:
         Mapping(const DeviceArray& array, std::size_t first, std::size_t count, cl_map_flags flags)
-            : array_(array), count_(count),
-              data_(static_cast<T*>(array.device_->queue().enqueueMapBuffer(
-                  array.buffer_, CL_TRUE, flags, first * sizeof(T), count * sizeof(T)))) {}
+            : array_(array), count_(count) {
+            const cl::CommandQueue& queue = array.device_->queue();
+            if (is_shared()) {
+                queue.finish();
+                data_ = static_cast<T*>(array.storage_->shared) + first;
+                return;
+            }
+            data_ = static_cast<T*>(queue.enqueueMapBuffer(array.buffer(), CL_TRUE, flags,
+                                                           first * sizeof(T), count * sizeof(T)));
+        }
         ~Mapping() {
-            clEnqueueUnmapMemObject(array_.device_->queue()(), array_.buffer_(), data_, 0, nullptr,
-                                    nullptr);
+            if (!is_shared())
+                clEnqueueUnmapMemObject(array_.device_->queue()(), array_.buffer()(), data_, 0,
+                                        nullptr, nullptr);
         }
         Mapping(const Mapping&) = delete;
         Mapping& operator=(const Mapping&) = delete;
         std::span<T> span() const { return {data_, count_}; }
 
     private:
+        bool is_shared() const { return array_.storage_->shared != nullptr; }
+
         const DeviceArray& array_;
         std::size_t count_;
-        T* data_;
+        T* data_ = nullptr;
     };
     Mapping map(cl_map_flags flags, std::size_t first, std::size_t count) const {
         return Mapping(*this, first, count, flags);
@@ -63,7 +97,7 @@ public:
 private:
     const Device* device_ = nullptr;
     std::size_t count_ = 0;
-    cl::Buffer buffer_;
+    std::unique_ptr<DeviceStorage> storage_;
 };
 
 } // namespace reradiant

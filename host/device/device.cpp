@@ -30,6 +30,14 @@ std::string type_name(cl_device_type type) {
     return type & CL_DEVICE_TYPE_ACCELERATOR ? "accelerator" : "custom";
 }
 
+bool shares_memory(const cl::Device& device, const std::string& version) {
+    cl_device_svm_capabilities capabilities = 0;
+    return version.rfind("OpenCL 1", 0) != 0 &&
+           clGetDeviceInfo(device(), CL_DEVICE_SVM_CAPABILITIES, sizeof(capabilities),
+                           &capabilities, nullptr) == CL_SUCCESS &&
+           (capabilities & CL_DEVICE_SVM_FINE_GRAIN_BUFFER) != 0;
+}
+
 DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, int index) {
     DeviceInfo info;
     info.index = index;
@@ -43,6 +51,7 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, int 
     info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
     info.local_memory_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
     info.max_work_group = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+    info.shares_memory = shares_memory(device, info.version);
     info.has_double =
         device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
     return info;
@@ -135,7 +144,7 @@ Device::Device(const std::string& name_or_index) {
         info_ = found.info;
         device_ = found.device;
         context_ = cl::Context(device_);
-        queue_ = cl::CommandQueue(context_, device_);
+        queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE);
     });
 }
 

@@ -16,6 +16,7 @@ struct DeviceInfo {
     std::uint64_t memory_bytes = 0, max_allocation_bytes = 0, local_memory_bytes = 0;
     std::size_t max_work_group = 0;
     bool has_double = false;
+    bool shares_memory = false; ///< with the host, without mapping (fine-grained SVM, OpenCL 2)
 };
 
 /// Before the first OpenCL call of the process: gives PoCL a cache folder of this program's own
@@ -25,7 +26,7 @@ void prepare_opencl(int threads);
 /// Every OpenCL device of every platform. Empty when there is none.
 std::vector<DeviceInfo> list_devices();
 
-/// A device with one in-order queue.
+/// A device with one in-order queue that takes the time of what it runs.
 class Device {
 public:
     /// By index or by a part of its name (case-insensitive); empty: the first. Run-time Error

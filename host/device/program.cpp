@@ -142,10 +142,12 @@ Kernel::Kernel(const cl::Program& program, const char* name, std::size_t local_s
                             kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device)});
 }
 
-void Kernel::launch(const Device& device, std::size_t items) const {
+cl::Event Kernel::launch(const Device& device, std::size_t items) const {
     const std::size_t groups = (items + local_size_ - 1) / local_size_;
+    cl::Event event;
     device.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups * local_size_),
-                                        cl::NDRange(local_size_));
+                                        cl::NDRange(local_size_), nullptr, &event);
+    return event;
 }
 
 } // namespace reradiant

@@ -42,8 +42,9 @@ public:
         (kernel_.setArg(index++, arguments), ...);
     }
 
-    /// Runs at least `items` work-items (rounded up to whole groups; kernels check the range).
-    void launch(const Device& device, std::size_t items) const;
+    /// Queues at least `items` work-items (rounded up to whole groups; kernels check the range).
+    /// The event says when they ran.
+    cl::Event launch(const Device& device, std::size_t items) const;
     std::size_t local_size() const { return local_size_; }
     const cl::Kernel& handle() const { return kernel_; }
 

@@ -3,7 +3,9 @@
 #include "host/geometry/embree_version.h"
 #include "host/geometry/surfaces.h"
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -172,6 +174,8 @@ struct Geometry::Implementation {
     void check(const char* doing) const;
     HitRecord nearest(const RayRecord& record, bool coherent) const;
     void occlude(RayRecord& record) const;
+    void hit(const RaysToHit& rays, std::size_t begin, std::size_t end) const;
+    std::uint64_t block(const RaysToBlock& rays, std::size_t begin, std::size_t end) const;
     HitRecord describe(const RayRecord& record, const RTCRayHit& found) const;
     template <typename Primitive>
     HitRecord describe(const OwnedPrimitives<Primitive>& owned, unsigned int index, Ray ray,
@@ -318,6 +322,26 @@ void Geometry::Implementation::occlude(RayRecord& record) const {
     record.t_far = -1.0f;
 }
 
+/// For the rays that `live` lists from `begin` to `end`.
+void Geometry::Implementation::hit(const RaysToHit& rays, std::size_t begin,
+                                   std::size_t end) const {
+    for (std::size_t i = begin; i < end; ++i)
+        rays.hits[rays.live[i]] = nearest(rays.rays[rays.live[i]], rays.coherent);
+}
+
+std::uint64_t Geometry::Implementation::block(const RaysToBlock& rays, std::size_t begin,
+                                              std::size_t end) const {
+    std::uint64_t active = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        RayRecord& ray = rays.rays[rays.live[i]];
+        if (ray.t_far >= 0.0f) {
+            ++active;
+            occlude(ray);
+        }
+    }
+    return active;
+}
+
 Geometry::Geometry(const Scene& scene, bool wants_parameters)
     : implementation_(std::make_unique<Implementation>(scene, wants_parameters)) {}
 Geometry::~Geometry() = default;
@@ -328,32 +352,27 @@ void Geometry::intersect(std::span<const RayRecord> rays, std::span<HitRecord> h
                  [&](std::size_t i) { hits[i] = implementation_->nearest(rays[i], coherent); });
 }
 
-void Geometry::intersect(std::span<const RayRecord> rays, std::span<HitRecord> hits,
-                         std::span<const std::uint32_t> live, bool coherent, int threads) const {
-    for_each_ray(live.size(), threads, [&](std::size_t i) {
-        hits[live[i]] = implementation_->nearest(rays[live[i]], coherent);
-    });
-}
-
 void Geometry::occlude(std::span<RayRecord> rays, int threads) const {
     for_each_ray(rays.size(), threads, [&](std::size_t i) { implementation_->occlude(rays[i]); });
 }
 
-std::uint64_t Geometry::occlude(std::span<RayRecord> rays, std::span<const std::uint32_t> live,
+TraceStatistics Geometry::trace(const RaysToHit& rays, const RaysToBlock& shadow_rays,
                                 int threads) const {
-    std::atomic<std::uint64_t> active{0};
-    for_each_chunk(live.size(), threads, [&](std::size_t begin, std::size_t end) {
-        std::uint64_t in_chunk = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            RayRecord& ray = rays[live[i]];
-            if (ray.t_far >= 0.0f) {
-                ++in_chunk;
-                implementation_->occlude(ray);
-            }
-        }
-        active += in_chunk;
+    using Clock = std::chrono::steady_clock;
+    const std::size_t shadows = shadow_rays.live.size();
+    std::atomic<std::uint64_t> blockable{0};
+    std::atomic<std::int64_t> hit_ns{0}, block_ns{0};
+    for_each_chunk(shadows + rays.live.size(), threads, [&](std::size_t begin, std::size_t end) {
+        const std::size_t split = std::clamp(shadows, begin, end);
+        const Clock::time_point start = Clock::now();
+        blockable += implementation_->block(shadow_rays, begin, split);
+        const Clock::time_point between = Clock::now();
+        if (split < end)
+            implementation_->hit(rays, split - shadows, end - shadows);
+        block_ns += std::chrono::nanoseconds(between - start).count();
+        hit_ns += std::chrono::nanoseconds(Clock::now() - between).count();
     });
-    return active;
+    return {1e-9 * static_cast<double>(hit_ns), 1e-9 * static_cast<double>(block_ns), blockable};
 }
 
 std::size_t Geometry::triangle_count() const {

@@ -10,6 +10,25 @@
 
 namespace reradiant {
 
+/// Rays whose nearest hits are wanted.
+struct RaysToHit {
+    std::span<const RayRecord> rays;
+    std::span<HitRecord> hits;
+    std::span<const std::uint32_t> live; ///< places of those that count
+    bool coherent = false;
+};
+
+/// Rays that something may block.
+struct RaysToBlock {
+    std::span<RayRecord> rays;
+    std::span<const std::uint32_t> live;
+};
+
+struct TraceStatistics {
+    double hit_seconds = 0.0, block_seconds = 0.0; ///< of all threads together
+    std::uint64_t blockable = 0;                   ///< rays of RaysToBlock that were active
+};
+
 /// The scene's surfaces (shapes, and the lights that have a surface) behind Embree.
 /// All functions may be called from any thread.
 class Geometry {
@@ -29,12 +48,8 @@ public:
                    int threads) const;
     /// Sets t_far = -1 for every ray that something blocks in (t_near, t_far).
     void occlude(std::span<RayRecord> rays, int threads) const;
-    /// The same for the rays whose places are in `live`, each once; the others are not touched.
-    void intersect(std::span<const RayRecord> rays, std::span<HitRecord> hits,
-                   std::span<const std::uint32_t> live, bool coherent, int threads) const;
-    /// `occlude` counts the rays that were active.
-    std::uint64_t occlude(std::span<RayRecord> rays, std::span<const std::uint32_t> live,
-                          int threads) const;
+    /// Both in one go, for the rays whose places are listed, each once; others are not touched.
+    TraceStatistics trace(const RaysToHit& rays, const RaysToBlock& shadow_rays, int threads) const;
 
     std::size_t triangle_count() const;
     std::size_t memory_bytes() const; ///< what Embree reports

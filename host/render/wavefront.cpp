@@ -58,7 +58,7 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         const std::size_t slots = static_cast<std::size_t>(capacity_) * rounds_;
         rays_ = {device, capacity_};
         hits_ = {device, capacity_};
-        live_ = {device, capacity_};
+        live_ = {DeviceArray<std::uint32_t>{device, capacity_}, {device, capacity_}};
         goes_on_ = {device, capacity_};
         paths_ = {device, capacity_};
         vertices_ = {device, slots};
@@ -128,6 +128,7 @@ void Wavefront::render_pass(std::uint32_t first_sample, std::uint32_t samples) {
                                  first_sample + done, together});
             done += together;
         }
+        finish_kernels();
     });
 }
 
@@ -144,9 +145,13 @@ void Wavefront::trace_paths(const Batch& batch) {
     generate(batch);
     if (scene_.features.walk)
         walk_chunks_used_.fill_zero();
-    for (std::uint32_t depth = 0; depth < rounds_ && intersect(batch, depth); ++depth) {
+    for (std::uint32_t depth = 0;; ++depth) {
+        finish_kernels();
+        keep_live(batch, depth);
+        trace(batch, depth);
+        if (live_count_[depth % 2] == 0)
+            return;
         shade(depth);
-        occlude(batch, depth);
     }
 }
 
@@ -171,80 +176,82 @@ void Wavefront::generate(const Batch& batch) {
     generate_.bind(rays_.buffer(), paths_.buffer(), scene_.camera, batch.first_pixel,
                    batch.first_sample, batch.samples, batch.paths(),
                    static_cast<std::uint32_t>(phases_), settings_.sequence_blocks, settings_.seed);
-    generate_.launch(device_, batch.paths());
-    wait_for_kernels(statistics_.generate_seconds);
+    launch(generate_, batch.paths(), statistics_.generate_seconds);
 }
 
-/// Lists the paths that go on: most end after few vertices, and the stages then work on what is
-/// left.
+/// Lists the paths that reach a depth: most end after few vertices, and the stages then work on
+/// what is left.
 void Wavefront::keep_live(const Batch& batch, std::uint32_t depth) {
-    const auto live = live_.map(CL_MAP_READ | CL_MAP_WRITE, 0, batch.paths());
+    std::uint32_t& kept = live_count_[depth % 2];
+    kept = 0;
+    if (depth == rounds_)
+        return;
+    const auto live = live_[depth % 2].map(CL_MAP_WRITE, 0, batch.paths());
     if (depth == 0) {
         std::iota(live.span().begin(), live.span().end(), 0u);
-        live_count_ = batch.paths();
+        kept = batch.paths();
         return;
     }
-    const auto goes_on = goes_on_.map(CL_MAP_READ, 0, live_count_);
-    std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < live_count_; ++i) { // without branches
-        live.span()[kept] = live.span()[i];
+    const std::uint32_t candidates = live_count_[(depth - 1) % 2];
+    const auto before = live_[(depth - 1) % 2].map(CL_MAP_READ, 0, candidates);
+    const auto goes_on = goes_on_.map(CL_MAP_READ, 0, candidates);
+    for (std::uint32_t i = 0; i < candidates; ++i) { // without branches
+        live.span()[kept] = before.span()[i];
         kept += goes_on.span()[i];
     }
-    live_count_ = kept;
 }
 
-void Wavefront::show_rays(std::span<const RayRecord> rays, std::span<const std::uint32_t> live,
-                          bool shadow, bool coherent) const {
+/// Rays that reach a depth, together with the shadow rays of the depth before.
+void Wavefront::trace(const Batch& batch, std::uint32_t depth) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto rays = rays_.map(CL_MAP_READ, 0, batch.paths());
+    const auto hits = hits_.map(CL_MAP_WRITE, 0, batch.paths());
+    const auto live = live_[depth % 2].map(CL_MAP_READ, 0, live_count_[depth % 2]);
+    const std::size_t before = depth > 0 && samples_lights_ ? depth - 1 : 0;
+    const std::uint32_t shadows = depth > 0 && samples_lights_ ? live_count_[before % 2] : 0;
+    const auto shadow_rays = shadow_rays_.map(CL_MAP_READ | CL_MAP_WRITE, before * capacity_,
+                                              samples_lights_ ? batch.paths() : 0);
+    const auto shadow_live = live_[before % 2].map(CL_MAP_READ, 0, shadows);
+    const RaysToHit to_hit{rays.span(), hits.span(), live.span(), depth == 0};
+    const RaysToBlock to_block{shadow_rays.span(), shadow_live.span()};
+    show_rays(to_hit, to_block);
+    const TraceStatistics traced = geometry_.trace(to_hit, to_block, settings_.threads);
+    statistics_.rays += live.span().size() + traced.blockable;
+    statistics_.mapped_bytes += rays.span().size_bytes() + hits.span().size_bytes() +
+                                2 * shadow_rays.span().size_bytes(); // there and back
+    const double both = traced.hit_seconds + traced.block_seconds;
+    const double share = both > 0.0 ? traced.block_seconds / both : 0.0,
+                 wall = seconds_since(start);
+    statistics_.occlude_seconds += share * wall;
+    statistics_.intersect_seconds += (1.0 - share) * wall;
+}
+
+void Wavefront::show_rays(const RaysToHit& rays, const RaysToBlock& shadow_rays) const {
     if (!settings_.on_rays)
         return;
     std::vector<RayRecord> shown;
-    for (const std::uint32_t path : live)
-        if (rays[path].t_far >= 0.0f)
-            shown.push_back(rays[path]);
-    settings_.on_rays(shown, shadow, coherent);
-}
-
-bool Wavefront::intersect(const Batch& batch, std::uint32_t depth) {
-    const auto start = std::chrono::steady_clock::now();
-    keep_live(batch, depth);
-    if (live_count_ == 0)
-        return false;
-    const auto rays = rays_.map(CL_MAP_READ, 0, batch.paths());
-    const auto hits = hits_.map(CL_MAP_WRITE, 0, batch.paths());
-    const auto live = live_.map(CL_MAP_READ, 0, live_count_);
-    show_rays(rays.span(), live.span(), false, depth == 0);
-    geometry_.intersect(rays.span(), hits.span(), live.span(), depth == 0, settings_.threads);
-    statistics_.rays += live_count_;
-    statistics_.mapped_bytes += rays.span().size_bytes() + hits.span().size_bytes();
-    statistics_.intersect_seconds += seconds_since(start);
-    return true;
+    for (const std::uint32_t path : shadow_rays.live)
+        if (shadow_rays.rays[path].t_far >= 0.0f)
+            shown.push_back(shadow_rays.rays[path]);
+    settings_.on_rays(shown, true, false);
+    shown.clear();
+    for (const std::uint32_t path : rays.live)
+        shown.push_back(rays.rays[path]);
+    settings_.on_rays(shown, false, rays.coherent);
 }
 
 void Wavefront::shade(std::uint32_t depth) {
+    const std::uint32_t live_count = live_count_[depth % 2];
     shade_.bind(rays_.buffer(), hits_.buffer(), paths_.buffer(), vertices_.buffer(),
                 shadow_rays_.buffer(), lobe_weights_.buffer(), colours_.buffer(),
                 materials_.buffer(), layers_.buffer(), lobes_.buffer(), surfaces_.buffer(),
                 textures_.buffer(), lights_.buffer(), tables_.buffer(), walk_parts_.buffer(),
                 walk_chunks_.buffer(), walk_chunks_used_.buffer(), walk_vertices_.buffer(),
-                live_.buffer(), goes_on_.buffer(), scene_.image,
-                static_cast<std::uint32_t>(walk_chunks_.size()), live_count_, capacity_, depth,
+                live_[depth % 2].buffer(), goes_on_.buffer(), scene_.image,
+                static_cast<std::uint32_t>(walk_chunks_.size()), live_count, capacity_, depth,
                 settings_.max_depth, settings_.min_depth, scene_.sampled_lights, scene_.environment,
                 settings_.sequence_blocks, settings_.seed);
-    shade_.launch(device_, live_count_);
-    wait_for_kernels(statistics_.shade_seconds);
-}
-
-void Wavefront::occlude(const Batch& batch, std::uint32_t depth) {
-    if (!samples_lights_)
-        return;
-    const auto start = std::chrono::steady_clock::now();
-    const auto rays = shadow_rays_.map(CL_MAP_READ | CL_MAP_WRITE,
-                                       static_cast<std::size_t>(depth) * capacity_, batch.paths());
-    const auto live = live_.map(CL_MAP_READ, 0, live_count_);
-    show_rays(rays.span(), live.span(), true, false);
-    statistics_.rays += geometry_.occlude(rays.span(), live.span(), settings_.threads);
-    statistics_.mapped_bytes += 2 * rays.span().size_bytes(); // there and back
-    statistics_.occlude_seconds += seconds_since(start);
+    launch(shade_, live_count, statistics_.shade_seconds);
 }
 
 void Wavefront::gather(const Batch& batch) {
@@ -255,8 +262,7 @@ void Wavefront::gather(const Batch& batch) {
                  hero_weights_.buffer(), static_cast<std::uint32_t>(seen_lanes_[0]),
                  static_cast<std::uint32_t>(seen_lanes_[1]), scene_.image.light, batch.paths(),
                  capacity_, static_cast<std::uint32_t>(phases_), settings_.seed);
-    gather_.launch(device_, batch.paths());
-    wait_for_kernels(statistics_.gather_seconds);
+    launch(gather_, batch.paths(), statistics_.gather_seconds);
 }
 
 void Wavefront::add_to_film(const Batch& batch) {
@@ -264,14 +270,22 @@ void Wavefront::add_to_film(const Batch& batch) {
                paths_.buffer(), film_bands_.buffer(), film_weights_.buffer(), y_weights_.buffer(),
                batch.first_pixel - batch.strip->first_pixel, batch.first_sample, batch.samples,
                batch.pixels);
-    film_.launch(device_, batch.pixels);
-    wait_for_kernels(statistics_.film_seconds);
+    launch(film_, batch.pixels, statistics_.film_seconds);
 }
 
-void Wavefront::wait_for_kernels(double& stage_seconds) {
-    const auto start = std::chrono::steady_clock::now();
+void Wavefront::launch(const Kernel& kernel, std::size_t items, double& stage_seconds) {
+    launched_.emplace_back(kernel.launch(device_, items), &stage_seconds);
+}
+
+/// Waits for what was queued. The host waits before it traces rays only, so that the kernels that
+/// end a batch and begin the next follow each other.
+void Wavefront::finish_kernels() {
     device_.queue().finish();
-    stage_seconds += seconds_since(start);
+    for (const auto& [event, seconds] : launched_)
+        *seconds +=
+            1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                       event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+    launched_.clear();
 }
 
 void Wavefront::with_film(const std::function<void(FilmSums)>& use) const {
@@ -330,10 +344,10 @@ std::size_t Wavefront::device_bytes() const {
     return materials_.bytes() + layers_.bytes() + lobes_.bytes() + surfaces_.bytes() +
            walk_parts_.bytes() + walk_chunks_.bytes() + walk_vertices_.bytes() + textures_.bytes() +
            hero_lanes_.bytes() + hero_weights_.bytes() + colours_.bytes() + lights_.bytes() +
-           tables_.bytes() + rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() + live_.bytes() +
-           goes_on_.bytes() + paths_.bytes() + vertices_.bytes() + lobe_weights_.bytes() +
-           radiance_.bytes() + film_float_count() * sizeof(float) + film_bands_.bytes() +
-           film_weights_.bytes() + y_weights_.bytes();
+           tables_.bytes() + rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() +
+           2 * live_[0].bytes() + goes_on_.bytes() + paths_.bytes() + vertices_.bytes() +
+           lobe_weights_.bytes() + radiance_.bytes() + film_float_count() * sizeof(float) +
+           film_bands_.bytes() + film_weights_.bytes() + y_weights_.bytes();
 }
 
 } // namespace reradiant

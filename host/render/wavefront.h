@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace reradiant {
 
@@ -80,15 +82,14 @@ private:
     void trace_paths(const Batch& batch);
     bool walks_fit();
     void generate(const Batch& batch);
-    bool intersect(const Batch& batch, std::uint32_t depth);
     void keep_live(const Batch& batch, std::uint32_t depth);
-    void show_rays(std::span<const RayRecord> rays, std::span<const std::uint32_t> live,
-                   bool shadow, bool coherent) const;
+    void trace(const Batch& batch, std::uint32_t depth);
+    void show_rays(const RaysToHit& rays, const RaysToBlock& shadow_rays) const;
     void shade(std::uint32_t depth);
-    void occlude(const Batch& batch, std::uint32_t depth);
     void gather(const Batch& batch);
     void add_to_film(const Batch& batch);
-    void wait_for_kernels(double& stage_seconds);
+    void launch(const Kernel& kernel, std::size_t items, double& stage_seconds);
+    void finish_kernels();
 
     const Device& device_;
     const Geometry& geometry_;
@@ -100,6 +101,8 @@ private:
     std::uint32_t pixel_count_, capacity_, rounds_;
     bool samples_lights_;
     WavefrontStatistics statistics_;
+    /// Kernels that were queued, and where their time goes.
+    std::vector<std::pair<cl::Event, double*>> launched_;
 
     Kernel generate_, shade_, gather_, film_;
     DeviceArray<MaterialRecord> materials_;
@@ -117,9 +120,10 @@ private:
     DeviceArray<float> tables_, colours_;
     DeviceArray<RayRecord> rays_, shadow_rays_;
     DeviceArray<HitRecord> hits_;
-    DeviceArray<std::uint32_t> live_; ///< the batch's paths that go on, the first `live_count_`
-    DeviceArray<std::uint8_t> goes_on_; ///< of the live ones, whether they do
-    std::uint32_t live_count_ = 0;
+    /// The batch's paths that reach a depth, of even and of odd ones, and how many.
+    std::array<DeviceArray<std::uint32_t>, 2> live_;
+    std::array<std::uint32_t, 2> live_count_{};
+    DeviceArray<std::uint8_t> goes_on_; ///< of the live ones, whether they reach the next
     DeviceArray<PathState> paths_;
     DeviceArray<VertexRecord> vertices_;
     DeviceArray<float> lobe_weights_, radiance_;
