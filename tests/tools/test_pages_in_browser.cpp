@@ -1,0 +1,150 @@
+// The pages of `study` and `converge` in headless Chromium, used as a reader uses them.
+#include "tests/tools/program_runner.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace reradiant {
+
+namespace {
+
+/// Runs before the page's own script: what goes wrong there is kept.
+constexpr const char* watch = "<script>window.faults = [];"
+                              "addEventListener('error', (e) => faults.push(String(e.message)));"
+                              "</script>";
+
+/// What every page must say of itself: faults, resources from elsewhere, pictures that are broken.
+constexpr const char* report = R"js(
+  outcome.faults = faults;
+  outcome.fetched = performance.getEntriesByType('resource').map((e) => e.name)
+    .filter((name) => !name.startsWith('data:'));
+  outcome.broken = [...document.images].filter((i) => !i.complete || i.naturalWidth === 0).length;
+  outcome.pictures = document.images.length;
+  const text = document.createElement('pre');
+  text.id = 'outcome';
+  text.textContent = JSON.stringify(outcome);
+  document.body.replaceChildren(text);
+)js";
+
+class PagesInBrowser : public ProgramTest {
+protected:
+    void SetUp() override {
+        for (const char* name : {"chromium-headless-shell", "chromium", "chromium-browser"})
+            if (std::system(("command -v " + std::string(name) + " >/dev/null").c_str()) == 0)
+                browser_ = name;
+        if (browser_.empty())
+            GTEST_SKIP() << "no Chromium here: pages are not tested in a browser";
+        put("scene.toml", small_scene());
+    }
+
+    /// Opens a page, runs `steps` (which fill `outcome`) when it is loaded, and returns the
+    /// outcome.
+    nlohmann::json opened(const std::string& page, const std::string& steps) const {
+        std::string html = file_bytes(folder / page);
+        html.insert(html.find("<head>") + 6, watch);
+        html.insert(html.rfind("</body>"),
+                    "<script>addEventListener('load', () => { const outcome = {};\n" + steps +
+                        report + "});</script>");
+        put("opened.html", html);
+        const std::string command = browser_ +
+                                    " --headless --no-sandbox --disable-gpu --window-size=1200,900 "
+                                    "--virtual-time-budget=10000 --dump-dom 'file://" +
+                                    (folder / "opened.html").string() + "' 2>/dev/null >'" +
+                                    (folder / "dom.html").string() + "'";
+        EXPECT_EQ(std::system(command.c_str()), 0) << command;
+        const std::string dom = file_bytes(folder / "dom.html"), mark = "<pre id=\"outcome\">";
+        const std::size_t begin = dom.find(mark), end = dom.find("</pre>", begin);
+        if (begin == std::string::npos || end == std::string::npos) {
+            ADD_FAILURE() << "the page said nothing:\n" << dom.substr(0, 2000);
+            return {};
+        }
+        return nlohmann::json::parse(dom.substr(begin + mark.size(), end - begin - mark.size()));
+    }
+
+    static void expect_sound(const nlohmann::json& outcome, int pictures) {
+        EXPECT_EQ(outcome.at("faults"), nlohmann::json::array());
+        EXPECT_EQ(outcome.at("fetched"), nlohmann::json::array()) << "pages need no network";
+        EXPECT_EQ(outcome.at("broken"), 0);
+        EXPECT_GE(outcome.at("pictures"), pictures);
+    }
+
+    std::string browser_;
+};
+
+} // namespace
+
+TEST_F(PagesInBrowser, StudyIsPickedDraggedAndReadUnderThePointer) {
+    put("study.toml", "[study]\nscene = \"scene.toml\"\n[render]\nspp = 16\n[measure]\n"
+                      "[[sweep]]\nkey = \"material.grey.substrate.reflectance\"\n"
+                      "values = [0.2, 0.8]\n");
+    ASSERT_EQ(run("study study.toml -o results").exit_code, 0);
+    const nlohmann::json outcome = opened("results/index.html", R"js(
+  const all = (selector) => [...document.querySelectorAll(selector)];
+  const point = (canvas, x, y, buttons) => {
+    const box = canvas.getBoundingClientRect();
+    canvas.dispatchEvent(new PointerEvent('pointermove', { buttons,
+      clientX: box.left + x * box.width, clientY: box.top + y * box.height }));
+  };
+  const drag = (id, value) => {
+    const slider = document.getElementById(id);
+    slider.value = value;
+    slider.dispatchEvent(new Event('input'));
+  };
+  outcome.cells = all('#sheet button').length;
+  outcome.panels_at_first = all('.panel').length;
+  all('#sheet button')[1].click();
+  outcome.panels = all('.panel').length;
+  drag('nm', 600);
+  const second = all('.panel')[1];
+  point(second.querySelector('canvas.image'), 0.55, 0.6, 0);
+  outcome.pixel = second.querySelectorAll('.value')[0].textContent;
+  point(second.querySelectorAll('canvas:not(.image)')[0], 0.5, 0.5, 1); // dragged to the middle
+  outcome.dragged = Number(document.getElementById('nm').value);
+  drag('excitation', 450);
+  const matrix = second.querySelectorAll('canvas.image')[1];
+  point(matrix, 0.5, 0.5, 0);
+  outcome.matrix = [...second.querySelectorAll('.value')].map((v) => v.textContent)
+    .find((t) => / nm to /.test(t));
+  document.getElementById('single').click();
+  outcome.first_still = all('.panel')[0].querySelector('.value').textContent;
+  all('#sheet button')[0].click();
+  outcome.panels_at_last = all('.panel').length;
+)js");
+    expect_sound(outcome, 2);
+    EXPECT_EQ(outcome.at("cells"), 2);
+    EXPECT_EQ(outcome.at("panels_at_first"), 1);
+    EXPECT_EQ(outcome.at("panels"), 2);
+    EXPECT_EQ(outcome.at("panels_at_last"), 1);
+    const std::string pixel = outcome.at("pixel");
+    int x = 0, y = 0;
+    double radiance = 0.0, nm = 0.0;
+    ASSERT_EQ(std::sscanf(pixel.c_str(), "pixel %d, %d: %lf at %lf nm", &x, &y, &radiance, &nm), 4)
+        << pixel;
+    EXPECT_EQ(x, 4);
+    EXPECT_EQ(y, 3);
+    EXPECT_EQ(nm, 600.0);
+    EXPECT_NEAR(radiance, 0.8, 0.05) << "the furnace shows the reflectance of the second cell";
+    EXPECT_NEAR(outcome.at("dragged").get<double>(), 580.0, 30.0);
+    double from = 0.0, to = 0.0, entry = -1.0;
+    const std::string matrix = outcome.at("matrix");
+    ASSERT_EQ(std::sscanf(matrix.c_str(), "%lf nm to %lf nm: %lf", &from, &to, &entry), 3)
+        << matrix;
+    EXPECT_NEAR(entry, from == to ? 0.8 : 0.0, 0.01);
+    EXPECT_NE(outcome.at("first_still").get<std::string>().find("pixel"), std::string::npos);
+}
+
+TEST_F(PagesInBrowser, ConvergeShowsCurvesAndErrorImages) {
+    ASSERT_EQ(run("converge scene.toml -o curves --methods comb,hero:4 --time 0.1").exit_code, 0);
+    const nlohmann::json outcome = opened("curves/index.html", R"js(
+  outcome.plots = document.querySelectorAll('svg path, svg polyline').length;
+  outcome.error_images = document.querySelectorAll('svg image').length;
+  outcome.text = document.body.innerText;
+)js");
+    expect_sound(outcome, 0);
+    EXPECT_EQ(outcome.at("error_images"), 2);
+    EXPECT_GE(outcome.at("plots"), 2);
+    EXPECT_NE(outcome.at("text").get<std::string>().find("hero:4"), std::string::npos);
+}
+
+} // namespace reradiant
