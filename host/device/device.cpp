@@ -158,6 +158,16 @@ void check_allocation(const Device& device, std::size_t bytes) {
             "make the film smaller, take fewer bands or another --device");
 }
 
+void check_memory(const Device& device, std::size_t bytes) {
+    const DeviceInfo& info = device.info();
+    if (bytes > info.memory_bytes)
+        throw_runtime_error(
+            fmt::format("arrays of {} bytes are needed, the OpenCL device '{}' allocates at most "
+                        "{} in all",
+                        bytes, info.name, info.memory_bytes),
+            "make the film smaller, take fewer bands or another --device");
+}
+
 void opencl_checked(const std::string& what, const std::function<void()>& action) {
     try {
         action();

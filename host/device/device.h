@@ -47,6 +47,8 @@ private:
 
 /// Run-time Error when the device cannot allocate so much in one piece.
 void check_allocation(const Device& device, std::size_t bytes);
+/// Run-time Error when arrays of so many bytes together are more than the device's memory.
+void check_memory(const Device& device, std::size_t bytes);
 
 /// Runs `action`; an OpenCL error becomes a run-time Error that names `what` and the code.
 void opencl_checked(const std::string& what, const std::function<void()>& action);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 namespace reradiant {
 
 namespace {
@@ -62,6 +64,21 @@ RenderFeatures RenderFeatures::all() {
         features.*bit.value = true;
     features.lobes = generic_lobes;
     return features;
+}
+
+RenderFeatures RenderFeatures::only(const std::string& name) {
+    RenderFeatures features;
+    std::string names;
+    for (const FeatureBit& bit : feature_bits) {
+        if (name == bit.name) {
+            features.*bit.value = true;
+            features.lobes = features.deeper_lobes ? generic_lobes : 0;
+            return features;
+        }
+        names += std::string(names.empty() ? "" : ", ") + bit.name;
+    }
+    throw std::invalid_argument(
+        fmt::format("kernels have no feature '{}'; there are {}", name, names));
 }
 
 KernelDefines RenderFeatures::defines() const {

@@ -22,6 +22,8 @@ struct RenderFeatures {
     int walk_layers = 1; ///< most layers of a material that is walked through
 
     static RenderFeatures all();
+    /// All bits off but one; std::invalid_argument lists the names when there is none such.
+    static RenderFeatures only(const std::string& name);
     KernelDefines defines() const;
     /// Name to on/off, for the statistics.
     std::map<std::string, bool> listed() const;

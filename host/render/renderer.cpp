@@ -54,9 +54,13 @@ void check_memory(const Scene& scene, const WavelengthPlan& plan, const RenderOp
 
 SceneTables prepare_tables(const Scene& scene, const WavelengthPlan& plan,
                            const RenderOptions& options) {
-    SceneTables tables = build_scene_tables(scene, plan, options.model, options.all_features);
+    const RenderFeatures at_least = options.all_features ? RenderFeatures::all()
+                                    : options.also_on.empty()
+                                        ? RenderFeatures{}
+                                        : RenderFeatures::only(options.also_on);
+    SceneTables tables = build_scene_tables(scene, plan, options.model, at_least);
     const FilmLayout layout =
-        film_layout(plan, options.band_variance || options.all_features, options.all_features);
+        film_layout(plan, options.band_variance || at_least.band_variance, at_least.scatter);
     tables.features.scatter = layout.scatter;
     tables.features.band_variance = layout.band_variance;
     return tables;

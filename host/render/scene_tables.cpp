@@ -36,10 +36,9 @@ ModelUse use_in(const WavelengthPlan& plan) {
 }
 
 SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, Model model,
-                               bool keep_all) {
+                               const RenderFeatures& at_least) {
     SceneTables tables;
-    if (keep_all)
-        tables.features = RenderFeatures::all();
+    tables.features = at_least;
     std::vector<Model> models;
     for (const Material& material : scene.materials) {
         const ModelChoice choice = choose_model(material, model, use_in(plan));

@@ -45,8 +45,8 @@ CameraRecord camera_record(const Camera& camera, const FilmSettings& film);
 /// What materials are looked at for in a picture that samples wavelengths so.
 ModelUse use_in(const WavelengthPlan& plan);
 
-/// `model` other than Auto replaces every material's own; `keep_all` sets every feature bit.
+/// `model` other than Auto replaces every material's own; `at_least`: bits that are set anyway.
 SceneTables build_scene_tables(const Scene& scene, const WavelengthPlan& plan, Model model,
-                               bool keep_all);
+                               const RenderFeatures& at_least = {});
 
 } // namespace reradiant

@@ -89,6 +89,7 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
 }
 
 void Wavefront::make_film() {
+    check_memory(device_, film_float_count() * sizeof(float));
     const std::size_t units = std::max<std::size_t>(
         1, strip_bytes / (film_layout_.floats_per_pixel() * sizeof(float) * film_strip_unit));
     const auto together = static_cast<std::uint32_t>(units * film_strip_unit);

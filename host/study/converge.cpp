@@ -40,7 +40,7 @@ void check_methods(const Scene& scene, const ConvergeOptions& options) {
     for (const RenderMethod& method : options.methods) {
         plan.hero = method.hero_count;
         try {
-            build_scene_tables(scene, plan, method.model, false);
+            build_scene_tables(scene, plan, method.model);
         } catch (const Error& error) {
             throw_input_error({scene.file.string()},
                               fmt::format("cannot be rendered by the method '{}': {}", method.name,

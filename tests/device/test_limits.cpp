@@ -47,9 +47,16 @@ TEST(DeviceLimits, Case39BuffersAreTheDriversOwnAndAligned) {
         const DeviceArray<float> array(device(), count);
         const auto mapped = array.map(CL_MAP_READ, 0, count);
         EXPECT_EQ(reinterpret_cast<std::uintptr_t>(mapped.span().data()) % 128, 0U);
-        EXPECT_EQ(array.buffer().getInfo<CL_MEM_FLAGS>() &
-                      static_cast<cl_mem_flags>(CL_MEM_USE_HOST_PTR),
-                  0U);
+        // over memory that is given only where that is the driver's own (SVM), aligned for any type
+        cl_bool is_shared = CL_FALSE;
+        if (array.buffer().getInfo<CL_MEM_FLAGS>() &
+            static_cast<cl_mem_flags>(CL_MEM_USE_HOST_PTR)) {
+            ASSERT_EQ(clGetMemObjectInfo(array.buffer()(), CL_MEM_USES_SVM_POINTER,
+                                         sizeof(is_shared), &is_shared, nullptr),
+                      CL_SUCCESS);
+            EXPECT_EQ(is_shared, CL_TRUE);
+        }
+        EXPECT_EQ(is_shared == CL_TRUE, device().info().shares_memory);
     }
 }
 

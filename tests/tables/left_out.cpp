@@ -2,6 +2,8 @@
 // features that it needs, and with all of them and every wavelength sampled. Kernels are built anew
 // in an empty cache. Arguments: scene files; none: those of tools/examples. Exits with 3 when the
 // two images of a scene differ by more than three standard errors of their tile means (Sidak).
+// A second table has the price of every feature alone: the reference study, which needs few, with
+// one more at a time.
 #include "host/device/device.h"
 #include "host/render/renderer.h"
 #include "host/scene/scene.h"
@@ -138,6 +140,60 @@ bool print_scene(const fs::path& file, const Device& device, const EmptyCache& c
     return same;
 }
 
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+RenderResult rendered_with(const Scene& scene, const Device& device, const std::string& feature) {
+    RenderOptions options;
+    options.samples = samples;
+    options.bands = WavelengthGrid{380, 6.25, 64};
+    options.also_on = feature;
+    return render(scene, device, options);
+}
+
+/// Program and buffers of the scene with one feature more than it needs, and its time against that
+/// without, the median of turns.
+void print_feature(const std::string& feature, const Scene& scene, const Device& device,
+                   const EmptyCache& cache, const RenderResult& without) {
+    constexpr int turns = 7;
+    cache.empty_programs();
+    const RenderResult with = rendered_with(scene, device, feature);
+    std::vector<double> ratios;
+    for (int turn = 0; turn < turns; ++turn) {
+        const double plain = rendering_seconds(rendered_with(scene, device, ""));
+        ratios.push_back(rendering_seconds(rendered_with(scene, device, feature)) / plain);
+    }
+    const TileDistance distance = tile_distance(without.image, with.image);
+    fmt::print("| {} | {:+.1f} | {:+.2f} | {:+.2f} | {:.2f} | {} |\n", feature,
+               (static_cast<double>(with.build.binary_bytes) -
+                static_cast<double>(without.build.binary_bytes)) /
+                   1024.0,
+               with.build.seconds - without.build.seconds,
+               mebibytes(with.device_bytes) - mebibytes(without.device_bytes), median(ratios),
+               with.image.values == without.image.values ? "bit for bit"
+                                                         : fmt::format("{:.1f}", distance.largest));
+    std::fflush(stdout);
+}
+
+void print_features(const Device& device, const EmptyCache& cache) {
+    const Scene scene =
+        small_scene(fs::path(RERADIANT_SOURCE_DIR) / "tools" / "examples" / "reference-study.toml");
+    cache.empty_programs();
+    const RenderResult without = rendered_with(scene, device, "");
+    fmt::print(
+        "\nreference-study, 64 bands: {:.0f} KiB of programs built in {:.1f} s, {:.1f} MiB "
+        "of buffers. One feature more:\n\n"
+        "| feature | programs, KiB | building, s | buffers, MiB | rendering with : without | "
+        "image differs by, s.e. |\n| --- | --- | --- | --- | --- | --- |\n",
+        static_cast<double>(without.build.binary_bytes) / 1024.0, without.build.seconds,
+        mebibytes(without.device_bytes));
+    for (const auto& [feature, on] : without.features)
+        if (!on && feature != "hero") // hero is another estimator
+            print_feature(feature, scene, device, cache, without);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -156,5 +212,7 @@ int main(int argc, char** argv) {
     bool all_same = true;
     for (const fs::path& scene : scenes)
         all_same = print_scene(scene, device, cache) && all_same;
+    if (argc == 1)
+        print_features(device, cache);
     return all_same ? 0 : 3;
 }
