@@ -7,8 +7,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <map>
-#include <stdexcept>
 
 namespace reradiant {
 namespace {
@@ -87,39 +85,6 @@ TEST(LeavingOut, AllFeaturesGiveTheSameImage) {
             EXPECT_NEAR(all.image.values[i], some.image.values[i],
                         1e-4f * (some.image.values[i] + 0.1f));
     }
-}
-
-std::size_t program_bytes(const RenderFeatures& features) {
-    std::size_t bytes = 0;
-    for (const char* file :
-         {"kernels/generate.cl", "kernels/shade.cl", "kernels/gather.cl", "kernels/film.cl"})
-        bytes += build_program(device(), file, features.defines())
-                     .getInfo<CL_PROGRAM_BINARY_SIZES>()
-                     .front();
-    return bytes;
-}
-
-/// A bit that adds nothing to the programs would guard nothing: what is off is not there.
-TEST(LeavingOut, EveryFeatureAddsCodeThatIsGoneWithoutIt) {
-    using F = RenderFeatures;
-    const std::map<std::string, bool F::*> refine = {{"dense_matrix", &F::fluorescence},
-                                                     {"dispersion", &F::rough},
-                                                     {"deeper_lobes", &F::smooth},
-                                                     {"weidlich_wilkie", &F::smooth}};
-    const std::size_t bare = program_bytes(F{});
-    for (const auto& [name, on] : F{}.listed()) {
-        if (name == "hero")
-            continue; // another estimator, tested in test_hero.cpp
-        F with = F::only(name);
-        std::size_t without = bare;
-        if (const auto base = refine.find(name); base != refine.end()) {
-            F plain;
-            with.*(base->second) = plain.*(base->second) = true;
-            without = program_bytes(plain);
-        }
-        EXPECT_GT(program_bytes(with), without) << name;
-    }
-    EXPECT_THROW(F::only("fluoresence"), std::invalid_argument);
 }
 
 /// Kernels without double precision constants or types build where double is switched off.
