@@ -95,7 +95,8 @@ toml::table plastic(const MitsubaObject& bsdf, bool rough, MitsubaScene& scene) 
     toml::table layer{{"ior", relative_ior(bsdf, "polypropylene")}};
     if (rough)
         insert_roughness(layer, bsdf);
-    if (!bsdf.flag_or("nonlinear", false))
+    if (!bsdf.flag_or("nonlinear", false) &&
+        !take_linear_plastic(*material["substrate"].as_table(), layer))
         spdlog::warn("{}: the {} is rendered as with nonlinear = true: this program counts every "
                      "reflection between coat and base with the base's reflectance",
                      bsdf.document().position(bsdf.element()).text(), bsdf.title());

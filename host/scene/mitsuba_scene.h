@@ -56,6 +56,11 @@ void insert_mitsuba_reflectance(toml::table& into, const char* key, const Mitsub
 void insert_mitsuba_spectrum(toml::table& into, const char* key, const MitsubaObject& owner,
                              const std::string& name, MitsubaScene& scene);
 
+/// Makes a base beneath a coat look as Mitsuba's plastic without `nonlinear`, which takes every
+/// reflection between the two as one by a white base: Mitsuba divides rho by 1 - r, this program by
+/// 1 - r rho, so the base gets rho / (1 - r + r rho). False, and nothing changed, for a texture.
+bool take_linear_plastic(toml::table& substrate, const toml::table& layer);
+
 /// A texture plugin becomes a [[texture]]; what a reflectance says to use it.
 toml::table mitsuba_texture(const pugi::xml_node& element, MitsubaScene& scene);
 

@@ -115,6 +115,30 @@ TEST_F(Mitsuba, Materials) {
     EXPECT_DOUBLE_EQ(coated.stack.layers[0].absorption(500.0), 0.1);
 }
 
+TEST_F(Mitsuba, PlasticWithoutNonlinearGetsTheReflectanceThatLooksAlike) {
+    // The base of reflectance p sends up p / (1 - r p) by way of every reflection; Mitsuba without
+    // nonlinear p / (1 - r). r of n = 1.5: DESIGN.
+    const double r = 0.596346;
+    const auto base = [&](const std::string& reflectance) {
+        return material(R"(<bsdf type="plastic"><float name="int_ior" value="1.5"/>
+<float name="ext_ior" value="1"/>)" +
+                        reflectance + "</bsdf>")
+            .substrate.reflectance;
+    };
+    const auto expect = [&](double p, double given) {
+        EXPECT_NEAR(p / (1.0 - r * p), given / (1.0 - r), 2e-6);
+    };
+    expect(base("")(550.0), 0.5);
+    expect(base(R"(<spectrum name="diffuse_reflectance" value="1"/>)")(550.0), 1.0);
+    const auto sampled = base(R"(<spectrum name="diffuse_reflectance" value="400:0.1, 700:0.7"/>)");
+    for (const double nm : {400.0, 505.0, 550.0, 700.0})
+        expect(sampled(nm), 0.1 + 0.002 * (nm - 400.0));
+    EXPECT_DOUBLE_EQ(sampled(720.0), 0.0);
+    const std::array<double, 3> brown{0.4, 0.2, 0.1};
+    expect(base(R"(<rgb name="diffuse_reflectance" value="0.4, 0.2, 0.1"/>)")(600.0),
+           reflectance_from_rgb(brown)(600.0));
+}
+
 TEST_F(Mitsuba, ReferencesAndDefaults) {
     const Scene scene = load(R"(<default name="grey" value="0.25"/>
 <bsdf type="diffuse" id="wall"><spectrum name="reflectance" value="$grey"/></bsdf>
@@ -183,7 +207,8 @@ TEST_F(Mitsuba, WhatIsNotSupportedIsNamedWithItsPlace) {
 TEST_F(Mitsuba, WhatChangesLittleIsLeftOutWithAWarning) {
     const auto warned = warnings_of([&] {
         load(R"(<shape type="rectangle"><bsdf type="diffuse"/><emitter type="area"/></shape>
-<bsdf type="plastic"/>)");
+<bsdf type="plastic"/><bsdf type="plastic"><texture type="checkerboard" name="diffuse_reflectance"/>
+</bsdf>)");
     });
     ASSERT_EQ(warned.size(), 2u);
     EXPECT_NE(warned[0].find("scene.xml:6:25"), std::string::npos) << warned[0];
