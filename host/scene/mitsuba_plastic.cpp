@@ -21,6 +21,8 @@ std::vector<double> doubles(const toml::array& array) {
 /// Nodes of the spectrum and every 5 nm between, since the mapped one is curved.
 std::vector<double> fine_nodes(const Spectrum& spectrum) {
     std::vector<double> nodes = spectrum.breakpoints_nm();
+    if (nodes.empty()) // a constant
+        return {550.0};
     const double first = nodes.front(), last = nodes.back();
     for (double nm = std::ceil(first / step_nm) * step_nm; nm < last; nm += step_nm)
         nodes.push_back(nm);

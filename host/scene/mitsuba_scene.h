@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include <map>
+#include <set>
 #include <string>
 
 namespace reradiant {
@@ -29,7 +30,8 @@ public:
 
     /// Names of materials by the offset of their <bsdf>: each is added once.
     std::map<std::ptrdiff_t, std::string> material_names;
-    int bsdf_depth = 0; ///< of the one that is read now
+    std::set<std::ptrdiff_t> nested_bsdfs; ///< offsets of those that others hold
+    int bsdf_depth = 0;                    ///< of the one that is read now
     /// Type of the last texture that was read, and of a texture that a material uses ("image",
     /// "checker"); empty: none.
     std::string texture_met;

@@ -26,6 +26,48 @@ TEST_F(Mitsuba, SensorAndFilm) {
     EXPECT_NEAR(scene.camera.fov_deg, 2.0 * expected * 180.0 / std::numbers::pi, 1e-12);
 }
 
+TEST_F(Mitsuba, WithoutAFovTheFocalLengthCounts) {
+    const auto fov_deg = [&](const std::string& property) {
+        const std::string fov = "<float name=\"fov\" value=\"40\"/>";
+        return load_scene(
+                   write("scene.xml", testing::replaced(mitsuba_head, fov, property) + "</scene>"))
+            .camera.fov_deg;
+    };
+    // x_fov of Mitsuba 3.9.1 at twice the width of the height
+    const auto vertical = [](double x_fov_deg) {
+        const double half = std::numbers::pi / 360.0;
+        return std::atan(0.5 * std::tan(x_fov_deg * half)) / half;
+    };
+    EXPECT_NEAR(fov_deg(""), vertical(42.31171417), 1e-5);
+    for (const char* text : {"12", "12mm"})
+        EXPECT_NEAR(fov_deg(std::string("<string name=\"focal_length\" value=\"") + text + "\"/>"),
+                    vertical(116.38780212), 1e-5);
+    for (const char* text : {"", "mm", "-3mm", "12cm"})
+        EXPECT_TRUE(error_of([&] {
+                        fov_deg(std::string("<string name=\"focal_length\" value=\"") + text +
+                                "\"/>");
+                    }).thrown)
+            << text;
+}
+
+TEST_F(Mitsuba, WhatScenesOfOthersHold) {
+    const auto warned = warnings_of([&] {
+        load(R"(<integrator type="aov"><string name="aovs" value="depth:depth"/>
+<integrator type="path" name="image"/></integrator>
+<shape type="sphere"><bsdf type="roughconductor">
+<rgb name="specular_reflectance" value="1, 1.0, 1"/></bsdf></shape>
+<emitter type="point"><vector name="position" x="4" y="3"/></emitter>)");
+    });
+    ASSERT_EQ(warned.size(), 1u);
+    EXPECT_NE(warned[0].find("aovs"), std::string::npos) << warned[0];
+    const std::string offset = "<float name=\"principal_point_offset_x\" value=\"-0\"/>";
+    const std::string text = testing::replaced(mitsuba_head, "<film", offset + "<film");
+    EXPECT_NO_THROW(load_scene(write("s.xml", text + "</scene>")));
+    EXPECT_TRUE(error_of([&] {
+                    load_scene(write("s.xml", testing::replaced(text, "-0", "0.1") + "</scene>"));
+                }).thrown);
+}
+
 TEST_F(Mitsuba, EmissionInAllItsForms) {
     write("lamp.spd", "400 1\n700 3\n");
     const auto radiance = [&](const std::string& property) {
@@ -134,6 +176,7 @@ TEST_F(Mitsuba, PlasticWithoutNonlinearGetsTheReflectanceThatLooksAlike) {
     for (const double nm : {400.0, 505.0, 550.0, 700.0})
         expect(sampled(nm), 0.1 + 0.002 * (nm - 400.0));
     EXPECT_DOUBLE_EQ(sampled(720.0), 0.0);
+    expect(base(R"(<rgb name="diffuse_reflectance" value="1, 1, 1"/>)")(600.0), 1.0);
     const std::array<double, 3> brown{0.4, 0.2, 0.1};
     expect(base(R"(<rgb name="diffuse_reflectance" value="0.4, 0.2, 0.1"/>)")(600.0),
            reflectance_from_rgb(brown)(600.0));
@@ -194,12 +237,16 @@ TEST_F(Mitsuba, WhatIsNotSupportedIsNamedWithItsPlace) {
         "<shear>", 6, 49);
     expect("<shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape>", "$r", 6, 22);
     expect("<shape type=\"sphere\"><float name=\"radius\" value=\"1x\"/></shape>", "1x", 6, 22);
-    expect("<bsdf type=\"plastic\"><string name=\"int_ior\" value=\"butter\"/></bsdf>", "butter", 6,
-           22);
-    expect("<bsdf type=\"roughconductor\"><float name=\"alpha_u\" value=\"1\"/></bsdf>",
-           "anisotropic", 6, 29);
-    expect("<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"400:1 300:1\"/></bsdf>",
-           "ascending", 6, 22);
+    const auto expect_bsdf = [&](const std::string& bsdf, const std::string& text, int column) {
+        expect("<shape type=\"sphere\">\n" + bsdf + "</shape>", text, 7, column);
+    };
+    expect_bsdf("<bsdf type=\"plastic\"><string name=\"int_ior\" value=\"butter\"/></bsdf>",
+                "butter", 22);
+    expect_bsdf("<bsdf type=\"roughconductor\"><float name=\"alpha_u\" value=\"1\"/></bsdf>",
+                "anisotropic", 29);
+    expect_bsdf(
+        "<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"400:1 300:1\"/></bsdf>",
+        "ascending", 22);
     expect("<bsdf type=\"diffuse\" id=\"a\"/><bsdf type=\"diffuse\" id=\"a\"/>", "twice", 6, 30);
     expect("<shape type=\"sphere\">", "not valid XML", 7, 3);
 }
@@ -207,12 +254,15 @@ TEST_F(Mitsuba, WhatIsNotSupportedIsNamedWithItsPlace) {
 TEST_F(Mitsuba, WhatChangesLittleIsLeftOutWithAWarning) {
     const auto warned = warnings_of([&] {
         load(R"(<shape type="rectangle"><bsdf type="diffuse"/><emitter type="area"/></shape>
-<bsdf type="plastic"/><bsdf type="plastic"><texture type="checkerboard" name="diffuse_reflectance"/>
-</bsdf>)");
+<shape type="sphere"><bsdf type="plastic"/></shape><shape type="rectangle"><bsdf type="plastic">
+<texture type="checkerboard" name="diffuse_reflectance"/></bsdf></shape>
+<bsdf type="twosided" id="used"><ref id="inner"/></bsdf><bsdf type="diffuse" id="inner"/>
+<shape type="sphere"><ref id="used"/></shape><bsdf type="dielectric" id="glass"/>)");
     });
-    ASSERT_EQ(warned.size(), 2u);
+    ASSERT_EQ(warned.size(), 3u);
     EXPECT_NE(warned[0].find("scene.xml:6:25"), std::string::npos) << warned[0];
     EXPECT_NE(warned[1].find("nonlinear"), std::string::npos) << warned[1];
+    EXPECT_NE(warned[2].find("scene.xml:10:"), std::string::npos) << warned[2];
 }
 
 TEST_F(Mitsuba, Case36HostileFiles) {
@@ -224,13 +274,14 @@ TEST_F(Mitsuba, Case36HostileFiles) {
     for (int k = 0; k < 100000; ++k)
         deep += "<a>";
     EXPECT_TRUE(error_of([&] { load_scene(write("deep.xml", deep)); }).thrown);
-    std::string nested = mitsuba_head;
+    std::string nested = mitsuba_head + "<shape type=\"sphere\">";
     for (int k = 0; k < 1000; ++k)
         nested += "<bsdf type=\"twosided\">";
     for (int k = 0; k < 1000; ++k)
         nested += "</bsdf>";
-    EXPECT_TRUE(error_of([&] { load_scene(write("n.xml", nested + "</scene>")); }).thrown);
-    const Caught loop = refusal("<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf>");
+    EXPECT_TRUE(error_of([&] { load_scene(write("n.xml", nested + "</shape></scene>")); }).thrown);
+    const Caught loop = refusal("<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf><shape "
+                                "type=\"disk\"><ref id=\"a\"/></shape>");
     EXPECT_NE(loop.text.find("itself"), std::string::npos) << loop.text;
 }
 
