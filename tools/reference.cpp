@@ -41,7 +41,7 @@ shape = [
   { type = "sphere", center = [0, 0, 0], radius = 1, material = "a" },
   { type = "rectangle", center = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [0, 0, 1], material = "a" },
   { type = "disk", center = [0, 0, 0], normal = [0, 1, 0], radius = 1, material = "a" },
-  { type = "mesh", file = "mesh.obj", transform = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], face_normals = true, flip_v = false, material = "a" },
+  { type = "mesh", file = "mesh.obj", transform = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], face_normals = false, smooth_normals = true, flip_v = false, material = "a" },
   { type = "heightfield", file = "grey.png", center = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [0, 0, 1], height = 1, material = "a" }]
 texture = [
   { name = "n", type = "noise", space = "world", size = 1, levels = 2, low = 0, high = 1, seed = 0, tilt_deg = 5, octaves = 1, sharpness = 1 },

@@ -45,6 +45,7 @@ const std::map<std::string, std::string> texts{
     {"transform", "upper three rows of the matrix that moves the mesh, row after row"},
     {"flip_v", "takes 1 - v of the file for v; row 0 of an image is at v = 1"},
     {"face_normals", "leaves the file's normals out"},
+    {"smooth_normals", "computes normals at the vertices where the file has none"},
     {"material", "name of a [[material]]"},
     {"name", "what others refer to it by"},
     {"preset", "a material of spectra/materials, instead of all other keys"},

@@ -87,7 +87,7 @@ std::uint32_t next_pass(const RenderProgress& state, const RenderOptions& option
 
 bool must_stop(const RenderProgress& state, const RenderOptions& options) {
     return state.samples >= options.samples || state.seconds >= options.time_seconds ||
-           state.relmse <= options.relmse;
+           (options.relmse > 0.0 && state.relmse <= options.relmse);
 }
 
 void estimate_error(RenderProgress& state, FilmSums film, const FilmLayout& layout,

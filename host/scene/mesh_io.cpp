@@ -3,6 +3,8 @@
 #include "host/scene/load_state.h"
 #include "host/scene/table_reader.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -33,6 +35,29 @@ MeshShape parse_mesh(const std::filesystem::path& file, std::string_view bytes) 
 void append_fan(const std::vector<std::uint32_t>& corners, MeshShape& mesh) {
     for (std::size_t i = 2; i < corners.size(); ++i)
         mesh.indices.insert(mesh.indices.end(), {corners[0], corners[i - 1], corners[i]});
+}
+
+void add_smooth_normals(MeshShape& mesh) {
+    const auto corner = [&](std::uint32_t vertex) {
+        return Eigen::Vector3f::Map(&mesh.positions[3 * std::size_t{vertex}]).cast<double>().eval();
+    };
+    std::vector<Eigen::Vector3d> sums(mesh.positions.size() / 3, Eigen::Vector3d::Zero());
+    for (std::size_t face = 0; face + 2 < mesh.indices.size(); face += 3)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t here = mesh.indices[face + k];
+            const Eigen::Vector3d u = corner(mesh.indices[face + (k + 1) % 3]) - corner(here),
+                                  v = corner(mesh.indices[face + (k + 2) % 3]) - corner(here);
+            const Eigen::Vector3d normal = u.cross(v);
+            const double size = normal.norm();
+            if (size > 0.0)
+                sums[here] += normal / size * std::atan2(size, u.dot(v));
+        }
+    mesh.normals.clear();
+    for (const Eigen::Vector3d& sum : sums) {
+        const double size = sum.norm();
+        for (int axis = 0; axis < 3; ++axis)
+            mesh.normals.push_back(size > 0.0 ? static_cast<float>(sum[axis] / size) : 0.0f);
+    }
 }
 
 float mesh_coordinate(double value, const SourcePosition& at, const std::string& name) {

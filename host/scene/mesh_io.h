@@ -23,6 +23,11 @@ MeshShape parse_obj(const std::filesystem::path& file, std::string_view bytes);
 /// Appends the fan of a face whose corners are vertex numbers.
 void append_fan(const std::vector<std::uint32_t>& corners, MeshShape& mesh);
 
+/// Normals at the vertices of a mesh without: those of its triangles weighted by their angle there
+/// (Thuermer and Wuethrich 1998). A vertex of no area gets zero, which means: shade with the
+/// triangle's own.
+void add_smooth_normals(MeshShape& mesh);
+
 /// A coordinate as float; input Error at `at` naming it unless finite and at most 1e18 in size.
 float mesh_coordinate(double value, const SourcePosition& at, const std::string& name);
 

@@ -3,6 +3,7 @@
 #include "host/scene/mitsuba_scene.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
@@ -70,12 +71,19 @@ void add_element(const pugi::xml_node& element, MitsubaScene& scene) {
         add_mitsuba_sensor(element, scene);
     else if (tag == "integrator")
         add_mitsuba_integrator(element, scene);
-    else if (tag == "bsdf")
-        mitsuba_material(element, scene);
-    else if (tag != "default" && tag != "texture" && tag != "spectrum" &&
-             tag != "emitter") // used where referred to
+    else if (tag != "default" && tag != "texture" && tag != "spectrum" && tag != "emitter" &&
+             tag != "bsdf") // used where referred to
         scene.document().fail(element, fmt::format("<{}> is not supported", tag),
                               "a scene holds sensor, integrator, emitters, shapes, bsdfs");
+}
+
+/// What no shape has may be of any kind.
+void warn_of_unused_bsdfs(const MitsubaScene& scene) {
+    for (const pugi::xml_node& bsdf : scene.document().scene().children("bsdf"))
+        if (scene.material_names.count(bsdf.offset_debug()) == 0 &&
+            scene.nested_bsdfs.count(bsdf.offset_debug()) == 0)
+            spdlog::warn("{}: the bsdf is left out: no shape refers to it",
+                         scene.document().position(bsdf).text());
 }
 
 } // namespace
@@ -86,6 +94,7 @@ toml::table mitsuba_scene_table(const fs::path& file, const fs::path& base) {
     for (const pugi::xml_node& element : document.scene().children())
         if (element.type() == pugi::node_element)
             add_element(element, scene);
+    warn_of_unused_bsdfs(scene);
     if (!scene.table().contains("camera"))
         document.fail(document.scene(), "the scene has no sensor",
                       "add a <sensor type=\"perspective\">");

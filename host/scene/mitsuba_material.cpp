@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 namespace reradiant {
 
 namespace {
@@ -68,8 +70,12 @@ void require_one(const MitsubaObject& bsdf, const std::string& name) {
     if (!found)
         return;
     const std::string tag = found.name();
-    if ((tag != "float" && tag != "spectrum") || !bsdf.document().has(found, "value") ||
-        bsdf.document().text(found, "value") != "1")
+    const bool plain = (tag == "float" || tag == "spectrum" || tag == "rgb") &&
+                       bsdf.document().has(found, "value") && !bsdf.document().has(found, "type");
+    const auto is_one = [](double value) { return value == 1.0; };
+    const std::vector<double> values =
+        plain ? bsdf.document().numbers(found, "value", 0) : std::vector<double>{0.0};
+    if (!std::all_of(values.begin(), values.end(), is_one))
         bsdf.document().fail(found, fmt::format("{} other than 1 is not supported", name),
                              "leave it out: it breaks the energy balance");
 }
@@ -95,7 +101,8 @@ toml::table plastic(const MitsubaObject& bsdf, bool rough, MitsubaScene& scene) 
     toml::table layer{{"ior", relative_ior(bsdf, "polypropylene")}};
     if (rough)
         insert_roughness(layer, bsdf);
-    if (!bsdf.flag_or("nonlinear", false))
+    if (!bsdf.flag_or("nonlinear", false) &&
+        !take_linear_plastic(*material["substrate"].as_table(), layer))
         spdlog::warn("{}: the {} is rendered as with nonlinear = true: this program counts every "
                      "reflection between coat and base with the base's reflectance",
                      bsdf.document().position(bsdf.element()).text(), bsdf.title());
@@ -137,6 +144,7 @@ toml::table nested_material(const MitsubaObject& bsdf, MitsubaScene& scene) {
     if (inside.size() != 1)
         bsdf.fail(fmt::format("the {} has {} bsdfs", bsdf.title(), inside.size()),
                   "give one; another one for the back is not supported");
+    scene.nested_bsdfs.insert(inside.front().offset_debug());
     ++scene.bsdf_depth;
     toml::table material = material_of(inside.front(), scene);
     --scene.bsdf_depth;

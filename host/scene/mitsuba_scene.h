@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include <map>
+#include <set>
 #include <string>
 
 namespace reradiant {
@@ -29,7 +30,8 @@ public:
 
     /// Names of materials by the offset of their <bsdf>: each is added once.
     std::map<std::ptrdiff_t, std::string> material_names;
-    int bsdf_depth = 0; ///< of the one that is read now
+    std::set<std::ptrdiff_t> nested_bsdfs; ///< offsets of those that others hold
+    int bsdf_depth = 0;                    ///< of the one that is read now
     /// Type of the last texture that was read, and of a texture that a material uses ("image",
     /// "checker"); empty: none.
     std::string texture_met;
@@ -55,6 +57,11 @@ void insert_mitsuba_reflectance(toml::table& into, const char* key, const Mitsub
 /// The same without textures and colours: IOR and absorption.
 void insert_mitsuba_spectrum(toml::table& into, const char* key, const MitsubaObject& owner,
                              const std::string& name, MitsubaScene& scene);
+
+/// Makes a base beneath a coat look as Mitsuba's plastic without `nonlinear`, which takes every
+/// reflection between the two as one by a white base: Mitsuba divides rho by 1 - r, this program by
+/// 1 - r rho, so the base gets rho / (1 - r + r rho). False, and nothing changed, for a texture.
+bool take_linear_plastic(toml::table& substrate, const toml::table& layer);
 
 /// A texture plugin becomes a [[texture]]; what a reflectance says to use it.
 toml::table mitsuba_texture(const pugi::xml_node& element, MitsubaScene& scene);

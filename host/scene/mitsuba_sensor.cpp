@@ -5,8 +5,10 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 namespace reradiant {
 
@@ -35,6 +37,7 @@ FilmSize read_film(const MitsubaObject& sensor, MitsubaScene& scene) {
         size.height = film.integer_or("height", size.height);
         for (const char* name : {"file_format", "pixel_format", "component_format", "banner"})
             film.ignore(name, "images are spectral EXR files in single precision");
+        film.ignore("sample_border", "pixels are means over their area");
         if (!film.nested("rfilter").empty())
             spdlog::warn("{}: the filter of the {} is left out: pixels are means over their area",
                          scene.document().position(films.front()).text(), film.title());
@@ -46,8 +49,28 @@ FilmSize read_film(const MitsubaObject& sensor, MitsubaScene& scene) {
     return size;
 }
 
+constexpr double half_degree = std::numbers::pi / 360.0;
+
+/// The vertical field of view of a focal length: of a frame of 36 mm x 24 mm along the diagonal.
+double fov_of_focal_length(const MitsubaObject& sensor, const FilmSize& size) {
+    const std::string text = sensor.text_or("focal_length", "50mm");
+    double length_mm = 0.0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, failure] = std::from_chars(text.data(), end, length_mm);
+    const std::string_view rest(stop, end);
+    if (failure != std::errc{} || !(length_mm > 0.0) || (!rest.empty() && rest != "mm"))
+        sensor.document().fail(sensor.find("focal_length"),
+                               fmt::format("\"{}\" is not a focal length", text),
+                               "give millimetres above 0, for instance \"50mm\"");
+    const double half_diagonal = 0.5 * std::hypot(36.0, 24.0) / length_mm;
+    return std::atan(half_diagonal * size.height / std::hypot(size.width, size.height)) /
+           half_degree;
+}
+
 /// The vertical field of view from the one along `fov_axis`.
 double vertical_fov(const MitsubaObject& sensor, const FilmSize& size) {
+    if (!sensor.has("fov"))
+        return fov_of_focal_length(sensor, size);
     const double width = size.width, height = size.height;
     const double fov = sensor.number_or("fov", 0.0);
     if (!(fov > 0.0 && fov < 180.0))
@@ -69,7 +92,6 @@ double vertical_fov(const MitsubaObject& sensor, const FilmSize& size) {
         sensor.document().fail(sensor.find("fov_axis"),
                                fmt::format("the fov_axis \"{}\" is not known", axis),
                                "use x, y, diagonal, smaller or larger");
-    constexpr double half_degree = std::numbers::pi / 360.0;
     return std::atan(std::tan(fov * half_degree) * height / length) / half_degree;
 }
 
@@ -112,6 +134,10 @@ void add_mitsuba_sensor(const pugi::xml_node& element, MitsubaScene& scene) {
     } else {
         sensor.ignore("focus_distance", "a pinhole has none");
     }
+    for (const char* name : {"principal_point_offset_x", "principal_point_offset_y"})
+        if (sensor.number_or(name, 0.0) != 0.0)
+            sensor.document().fail(sensor.find(name), fmt::format("{} is not supported", name),
+                                   "give 0");
     for (const char* name : {"near_clip", "far_clip"})
         sensor.ignore(name, "nothing is clipped");
     read_sampler(sensor, scene);
@@ -121,14 +147,15 @@ void add_mitsuba_sensor(const pugi::xml_node& element, MitsubaScene& scene) {
 
 void add_mitsuba_integrator(const pugi::xml_node& element, MitsubaScene& scene) {
     const MitsubaObject integrator(scene.document(), element);
-    if (integrator.type() == "moment") { // variances of another integrator's image
+    if (integrator.type() == "moment" || integrator.type() == "aov") { // adds to another's image
+        integrator.ignore("aovs", "an image holds radiance alone");
         for (const pugi::xml_node& inside : integrator.nested("integrator"))
             add_mitsuba_integrator(inside, scene);
         integrator.finish();
         return;
     }
     if (integrator.type() != "path" && integrator.type() != "direct")
-        integrator.refuse_type({"path", "direct", "moment"});
+        integrator.refuse_type({"path", "direct", "moment", "aov"});
     toml::table settings;
     if (integrator.type() == "direct") {
         settings.insert("max_depth", 1);

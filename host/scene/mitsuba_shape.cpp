@@ -122,8 +122,8 @@ std::optional<toml::table> parallelogram(const MitsubaObject& shape, const Matri
 
 toml::table mesh(const MitsubaObject& shape, const Matrix& matrix, MitsubaScene& scene) {
     toml::table made{{"type", "mesh"}, {"file", scene.file_name(shape, "filename")}};
-    if (shape.flag_or("face_normals", false))
-        made.insert("face_normals", true);
+    // Without face_normals Mitsuba computes the normals that a file has not.
+    made.insert(shape.flag_or("face_normals", false) ? "face_normals" : "smooth_normals", true);
     if (!matrix.isIdentity(0.0)) {
         toml::array values;
         for (int row = 0; row < 3; ++row)

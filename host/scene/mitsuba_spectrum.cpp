@@ -1,5 +1,6 @@
 #include "host/scene/mitsuba_scene.h"
 #include "host/spectral/colour.h"
+#include "host/spectral/text_reader.h"
 
 #include <fmt/format.h>
 
@@ -76,8 +77,31 @@ toml::table rgb_emission(const Rgb& rgb) {
     return table_of(nm, value);
 }
 
+struct Samples {
+    std::vector<double> nm, value;
+};
+
+/// What a sampled spectrum is beyond its samples.
+enum class Beyond { Zero, EndValues };
+
+/// Mitsuba takes 0 beyond the samples, this program their end values: zeros are added up to
+/// Mitsuba's range of wavelengths.
+toml::table samples_of(Samples samples, Beyond beyond) {
+    constexpr double from_nm = 360.0, to_nm = 830.0, edge_nm = 1e-3;
+    auto& [nm, value] = samples;
+    if (beyond == Beyond::Zero && nm.front() > from_nm + edge_nm) {
+        nm.insert(nm.begin(), {from_nm, nm.front() - edge_nm});
+        value.insert(value.begin(), {0.0, 0.0});
+    }
+    if (beyond == Beyond::Zero && nm.back() < to_nm - edge_nm) {
+        nm.insert(nm.end(), {nm.back() + edge_nm, to_nm});
+        value.insert(value.end(), {0.0, 0.0});
+    }
+    return table_of(nm, value);
+}
+
 /// "400:0.1 700:0.5", or a number alone.
-toml::table pairs(const MitsubaDocument& document, const pugi::xml_node& element) {
+Samples pairs(const MitsubaDocument& document, const pugi::xml_node& element) {
     std::string text = document.text(element, "value");
     std::replace(text.begin(), text.end(), ':', ' ');
     std::vector<double> nm, value;
@@ -99,7 +123,7 @@ toml::table pairs(const MitsubaDocument& document, const pugi::xml_node& element
         std::adjacent_find(nm.begin(), nm.end(), std::greater_equal<>()) != nm.end())
         document.fail(element, "value is not made of ascending WAVELENGTH:VALUE pairs",
                       "write for instance \"400:0.1, 700:0.5\"");
-    return table_of(nm, value);
+    return {std::move(nm), std::move(value)};
 }
 
 std::vector<double> number_list(const MitsubaObject& spectrum, const std::string& name) {
@@ -110,8 +134,8 @@ std::vector<double> number_list(const MitsubaObject& spectrum, const std::string
     return spectrum.document().numbers(found, "value", 0);
 }
 
-toml::table sampled(const MitsubaObject& spectrum) {
-    const std::vector<double> values = number_list(spectrum, "values");
+Samples sampled(const MitsubaObject& spectrum) {
+    std::vector<double> values = number_list(spectrum, "values");
     std::vector<double> nm;
     if (spectrum.type() == "irregular") {
         nm = number_list(spectrum, "wavelengths");
@@ -127,11 +151,20 @@ toml::table sampled(const MitsubaObject& spectrum) {
         spectrum.fail(
             fmt::format("{} wavelengths stand beside {} values", nm.size(), values.size()),
             "give one for each");
-    return table_of(nm, values);
+    return {std::move(nm), std::move(values)};
+}
+
+toml::table spectrum_file(const pugi::xml_node& element, const MitsubaScene& scene, Beyond beyond) {
+    const std::string given = scene.document().text(element, "filename");
+    std::string name = scene.file_name(element, given);
+    if (beyond == Beyond::EndValues)
+        return toml::table{{"file", std::move(name)}};
+    NumberTable table = read_number_table(scene.document().file().parent_path() / given, 2);
+    return samples_of({std::move(table.columns[0]), std::move(table.columns[1])}, beyond);
 }
 
 /// A <spectrum> of a type of its own.
-toml::table plugin(const pugi::xml_node& element, MitsubaScene& scene) {
+toml::table plugin(const pugi::xml_node& element, MitsubaScene& scene, Beyond beyond) {
     const MitsubaObject spectrum(scene.document(), element);
     toml::table made;
     if (spectrum.type() == "uniform") {
@@ -144,7 +177,7 @@ toml::table plugin(const pugi::xml_node& element, MitsubaScene& scene) {
         const Spectrum shape = Spectrum::blackbody(kelvin, planck_per_nm(kelvin, 560.0));
         made = toml::table{{"blackbody_kelvin", kelvin}, {"scale", xyz_of(shape)[1]}};
     } else if (spectrum.type() == "regular" || spectrum.type() == "irregular") {
-        made = sampled(spectrum);
+        made = samples_of(sampled(spectrum), beyond);
     } else {
         spectrum.refuse_type({"uniform", "d65", "blackbody", "regular", "irregular"});
     }
@@ -159,14 +192,14 @@ pugi::xml_node resolved(const pugi::xml_node& element, const MitsubaScene& scene
 }
 
 /// A <spectrum> in any form; a number alone is the same at every wavelength.
-toml::table spectrum_of(const pugi::xml_node& element, MitsubaScene& scene) {
+toml::table spectrum_of(const pugi::xml_node& element, MitsubaScene& scene, Beyond beyond) {
     const MitsubaDocument& document = scene.document();
     if (document.has(element, "type"))
-        return plugin(element, scene);
+        return plugin(element, scene, beyond);
     if (document.has(element, "filename"))
-        return toml::table{{"file", scene.file_name(element, document.text(element, "filename"))}};
+        return spectrum_file(element, scene, beyond);
     if (document.text(element, "value").find(':') != std::string::npos)
-        return pairs(document, element);
+        return samples_of(pairs(document, element), beyond);
     return table_of({550.0}, {document.number(element, "value")});
 }
 
@@ -186,6 +219,18 @@ void insert_plain(toml::table& into, const char* key, toml::table spectrum) {
         remedy);
 }
 
+void insert_values(toml::table& into, const char* key, const MitsubaObject& owner,
+                   const std::string& name, MitsubaScene& scene, Beyond beyond) {
+    const pugi::xml_node element = resolved(owner.find(name), scene);
+    const std::string tag = element.name();
+    if (tag == "float")
+        into.insert(key, scene.document().number(element, "value"));
+    else if (tag == "spectrum")
+        insert_plain(into, key, spectrum_of(element, scene, beyond));
+    else
+        refuse_form(owner, name, element, "write a <spectrum> or a <float>");
+}
+
 } // namespace
 
 toml::table mitsuba_emission(const MitsubaObject& owner, const std::string& name,
@@ -200,7 +245,7 @@ toml::table mitsuba_emission(const MitsubaObject& owner, const std::string& name
     if (tag == "rgb")
         return rgb_emission(read_rgb(scene.document(), element, "value"));
     if (tag == "spectrum")
-        return spectrum_of(element, scene);
+        return spectrum_of(element, scene, Beyond::Zero);
     refuse_form(owner, name, element, "light has a <spectrum>, an <rgb> or a <float>");
 }
 
@@ -221,20 +266,14 @@ void insert_mitsuba_reflectance(toml::table& into, const char* key, const Mitsub
         const Rgb rgb = read_rgb(scene.document(), element, "value");
         into.insert(key, toml::table{{"rgb", toml::array{rgb[0], rgb[1], rgb[2]}}});
     } else {
-        insert_mitsuba_spectrum(into, key, owner, name, scene);
+        insert_values(into, key, owner, name, scene, Beyond::Zero);
     }
 }
 
 void insert_mitsuba_spectrum(toml::table& into, const char* key, const MitsubaObject& owner,
                              const std::string& name, MitsubaScene& scene) {
-    const pugi::xml_node element = resolved(owner.find(name), scene);
-    const std::string tag = element.name();
-    if (tag == "float")
-        into.insert(key, scene.document().number(element, "value"));
-    else if (tag == "spectrum")
-        insert_plain(into, key, spectrum_of(element, scene));
-    else
-        refuse_form(owner, name, element, "write a <spectrum> or a <float>");
+    // Where Mitsuba takes an index of refraction of 0 there is no surface to compare with.
+    insert_values(into, key, owner, name, scene, Beyond::EndValues);
 }
 
 } // namespace reradiant

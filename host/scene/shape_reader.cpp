@@ -73,6 +73,12 @@ MeshShape read_mesh_key(const TableReader& reader, LoadState& state) {
         transform_mesh(reader, mesh);
     if (reader.flag_or("face_normals", false))
         mesh.normals.clear();
+    if (reader.flag_or("smooth_normals", false)) {
+        if (reader.flag_or("face_normals", false))
+            reader.fail("smooth_normals", "smooth_normals stands beside face_normals", "keep one");
+        if (mesh.normals.empty())
+            add_smooth_normals(mesh);
+    }
     if (reader.flag_or("flip_v", false))
         for (std::size_t k = 1; k < mesh.texture_coordinates.size(); k += 2)
             mesh.texture_coordinates[k] = 1.0f - mesh.texture_coordinates[k];
@@ -147,7 +153,8 @@ Shape read_shape(const toml::table& table, const std::string& file, std::size_t 
         const TableReader reader = keys({"file", "center", "edge_u", "edge_v", "height"});
         return finish(reader, read_heightfield(reader, state));
     }
-    const TableReader reader = keys({"file", "transform", "face_normals", "flip_v"});
+    const TableReader reader =
+        keys({"file", "transform", "face_normals", "smooth_normals", "flip_v"});
     return finish(reader, read_mesh_key(reader, state));
 }
 

@@ -70,5 +70,21 @@ TEST(WavelengthPlan, AnyCombCountGivesTheSameBandMeans) {
     }
 }
 
+TEST(WavelengthPlan, AllSamplesAreTakenWhereTheHalvesAreEqual) {
+    // Nothing but a sky is seen, so that the estimated error is 0 from the second sample on; its
+    // spectrum takes 128 samples, two for each of the 64 phases of a cell of 50 nm.
+    const Spectrum sloped = Spectrum::table({400, 700}, {0.2, 1.0});
+    Scene scene = lit_by(sloped, material({}, 1.0));
+    scene.shapes.clear();
+    RenderOptions options;
+    options.bands = grid_from_range(425, 675, 50);
+    options.samples = 128;
+    const RenderResult result = render(scene, device(), options);
+    EXPECT_EQ(result.samples, 128u);
+    for (int band = 0; band < 6; ++band)
+        EXPECT_NEAR(band_statistics(result.image, band).mean,
+                    sloped.average(400.0 + 50.0 * band, 450.0 + 50.0 * band), 1e-6);
+}
+
 } // namespace
 } // namespace reradiant

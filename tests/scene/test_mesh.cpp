@@ -159,6 +159,12 @@ TEST(Obj, Case07BadValuesAreRefusedAtTheirPlace) {
     expect_refused("a.stl", start, 0, 0, ".ply or .obj");
 }
 
+TEST(Mesh, SmoothNormalsOfVerticesWithoutAreaAreZero) {
+    MeshShape mesh = parse_mesh("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
+    add_smooth_normals(mesh);
+    EXPECT_EQ(mesh.normals, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0}));
+}
+
 TEST(Mesh, Case36TruncationAtEveryByteIsAnErrorOrAMesh) {
     const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
     const std::pair<const char*, std::string> files[] = {{"a.ply", ascii_ply()},

@@ -45,8 +45,11 @@ void translate_exceptions() {
 
 PYBIND11_MODULE(_library, module) {
     using namespace reradiant::python;
+    namespace py = pybind11;
     module.doc() = "The C++ library beneath reradiant; use the functions of reradiant instead.";
     module.attr("version") = RERADIANT_VERSION;
+    module.attr("pybind11_version") =
+        py::make_tuple(PYBIND11_VERSION_MAJOR, PYBIND11_VERSION_MINOR);
     translate_exceptions();
     install_log();
     module.def("preset_names", &reradiant::preset_names);

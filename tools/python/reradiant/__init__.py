@@ -6,7 +6,12 @@ work on and show themselves in notebooks. Wavelengths are in nm, angles in degre
 their sources are in the project's README.
 """
 
-from . import _library, colour_science
+from . import _library
+from ._numpy_version import require_numpy_of
+
+require_numpy_of(_library.pybind11_version)
+
+from . import colour_science
 from .errors import Error, InputError, RunError
 from .functions import colour, devices, fit, measure, presets, render, synth
 from .image import Image

@@ -10,6 +10,7 @@ Floats = npt.NDArray[np.float32]
 Grid = Tuple[float, float, int]
 
 version: str
+pybind11_version: Tuple[int, int]
 
 def preset_names() -> List[str]: ...
 def devices() -> List[str]: ...
