@@ -104,7 +104,7 @@ FilmResolver film_resolver(const FilmLayout& layout, const Scene& scene, const W
 }
 
 SpectralImage resolved(const Wavefront& wavefront, FilmResolver resolver) {
-    wavefront.with_film([&](FilmSums film) {
+    wavefront.film().read([&](FilmSums film) {
         for (const FilmStrip& strip : film)
             resolver.add(strip);
     });
@@ -113,7 +113,7 @@ SpectralImage resolved(const Wavefront& wavefront, FilmResolver resolver) {
 
 /// Takes the film out of the wavefront; the image needs no memory on top of it.
 void finish_film(RenderResult& result, Wavefront& wavefront, FilmResolver resolver) {
-    wavefront.take_film([&](const FilmStrip& strip) {
+    wavefront.film().take([&](const FilmStrip& strip) {
         resolver.add(strip);
         result.non_finite += strip.refused();
     });
@@ -190,8 +190,8 @@ public:
             !std::filesystem::exists(options_.checkpoint, ignored))
             return {};
         const RenderCheckpoint kept =
-            read_checkpoint(options_.checkpoint, head_.identity, wavefront.film_float_count());
-        wavefront.restore_film(kept.sums, kept.statistics);
+            read_checkpoint(options_.checkpoint, head_.identity, wavefront.film().float_count());
+        wavefront.film().restore(kept.sums, kept.statistics);
         result.passes = kept.passes;
         result.paths = kept.paths;
         result.rays = kept.rays;
@@ -210,7 +210,7 @@ public:
         head_.passes = result.passes;
         head_.paths = result.paths + wavefront.statistics().paths;
         head_.rays = result.rays + wavefront.statistics().rays;
-        wavefront.with_film(
+        wavefront.film().read(
             [&](FilmSums film) { write_checkpoint(options_.checkpoint, head_, film); });
         written_ = Clock::now();
         write_seconds_ = seconds_since(start);
@@ -282,7 +282,7 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
         wavefront.render_pass(options.first_sample + state.samples, samples);
         state.samples += samples;
         state.seconds = seconds_before + seconds_since(rendering) - observing_seconds;
-        wavefront.with_film(
+        wavefront.film().read(
             [&](FilmSums film) { estimate_error(state, film, layout, result.plan); });
         result.passes.push_back(state);
         if (observe)

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
 #include <numeric>
 
 namespace reradiant {
@@ -17,8 +16,6 @@ namespace {
 /// (CASES 37: PoCL lays out a whole group's private memory on one stack).
 constexpr std::size_t scalar_group = 32;
 constexpr std::size_t vector_group = 8;
-/// Of the film in one piece: a piece's memory goes back while the image takes its own.
-constexpr std::size_t strip_bytes = std::size_t{64} << 20;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -83,25 +80,9 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         film_bands_ = {device, std::span<const std::int32_t>(film_layout_.lane_bands)};
         film_weights_ = {device, std::span<const float>(film_layout_.lane_weights)};
         y_weights_ = {device, std::span<const float>(film_layout_.y_weights)};
-        make_film();
+        film_ = {device, film_layout_, pixel_count_};
         device_.queue().finish();
     });
-}
-
-void Wavefront::make_film() {
-    check_memory(device_, film_float_count() * sizeof(float));
-    const std::size_t units = std::max<std::size_t>(
-        1, strip_bytes / (film_layout_.floats_per_pixel() * sizeof(float) * film_strip_unit));
-    const auto together = static_cast<std::uint32_t>(units * film_strip_unit);
-    for (std::uint32_t first = 0; first < pixel_count_; first += together) {
-        const std::uint32_t pixels = std::min(together, pixel_count_ - first);
-        strips_.push_back({first,
-                           pixels,
-                           {device_, pixels * film_layout_.floats_per_pixel()},
-                           {device_, pixels * film_statistics_per_pixel}});
-        strips_.back().sums.fill_zero();
-        strips_.back().statistics.fill_zero();
-    }
 }
 
 void Wavefront::build_kernels(BuildStatistics& build) {
@@ -114,7 +95,8 @@ void Wavefront::build_kernels(BuildStatistics& build) {
     shade_ = {build_program(device_, "kernels/shade.cl", defines, &build), "shade", scalar_group};
     gather_ = {build_program(device_, "kernels/gather.cl", defines, &build), "gather",
                vector_group};
-    film_ = {build_program(device_, "kernels/film.cl", defines, &build), "film", vector_group};
+    film_kernel_ = {build_program(device_, "kernels/film.cl", defines, &build), "film",
+                    vector_group};
 }
 
 void Wavefront::render_pass(std::uint32_t first_sample, std::uint32_t samples) {
@@ -122,7 +104,7 @@ void Wavefront::render_pass(std::uint32_t first_sample, std::uint32_t samples) {
         for (std::uint32_t done = 0; done < samples;) {
             const std::uint32_t together = std::min(samples - done, capacity_);
             const std::uint32_t pixels_at_once = capacity_ / together;
-            for (const Strip& strip : strips_)
+            for (const DeviceFilm::Strip& strip : film_.strips())
                 for (std::uint32_t first = 0; first < strip.pixels; first += pixels_at_once)
                     trace_batch({&strip, strip.first_pixel + first,
                                  std::min(pixels_at_once, strip.pixels - first),
@@ -267,11 +249,12 @@ void Wavefront::gather(const Batch& batch) {
 }
 
 void Wavefront::add_to_film(const Batch& batch) {
-    film_.bind(batch.strip->sums.buffer(), batch.strip->statistics.buffer(), radiance_.buffer(),
-               paths_.buffer(), film_bands_.buffer(), film_weights_.buffer(), y_weights_.buffer(),
-               batch.first_pixel - batch.strip->first_pixel, batch.first_sample, batch.samples,
-               batch.pixels);
-    launch(film_, batch.pixels, statistics_.film_seconds);
+    film_kernel_.bind(batch.strip->sums.buffer(), batch.strip->statistics.buffer(),
+                      radiance_.buffer(), paths_.buffer(), film_bands_.buffer(),
+                      film_weights_.buffer(), y_weights_.buffer(),
+                      batch.first_pixel - batch.strip->first_pixel, batch.first_sample,
+                      batch.samples, batch.pixels);
+    launch(film_kernel_, batch.pixels, statistics_.film_seconds);
 }
 
 void Wavefront::launch(const Kernel& kernel, std::size_t items, double& stage_seconds) {
@@ -289,66 +272,14 @@ void Wavefront::finish_kernels() {
     launched_.clear();
 }
 
-void Wavefront::with_film(const std::function<void(FilmSums)>& use) const {
-    opencl_checked("reading the film", [&] {
-        std::deque<DeviceArray<float>::Mapping> mappings; // they cannot be moved
-        const auto mapped = [&](const DeviceArray<float>& array) {
-            return std::span<const float>(
-                mappings.emplace_back(array, 0, array.size(), CL_MAP_READ).span());
-        };
-        std::vector<FilmStrip> film;
-        for (const Strip& strip : strips_)
-            film.push_back({strip.first_pixel, mapped(strip.sums), mapped(strip.statistics)});
-        use(film);
-    });
-}
-
-void Wavefront::take_film(const std::function<void(const FilmStrip&)>& use) {
-    opencl_checked("reading the film", [&] {
-        for (Strip& strip : strips_) {
-            {
-                const auto sums = strip.sums.map(CL_MAP_READ, 0, strip.sums.size());
-                const auto statistics =
-                    strip.statistics.map(CL_MAP_READ, 0, strip.statistics.size());
-                use({strip.first_pixel, sums.span(), statistics.span()});
-            }
-            device_.queue().finish(); // or the mapping would keep the memory
-            strip.sums = {};
-            strip.statistics = {};
-        }
-    });
-}
-
-void Wavefront::restore_film(std::span<const float> sums, std::span<const float> statistics) const {
-    const std::size_t per_pixel = film_layout_.floats_per_pixel();
-    if (sums.size() != pixel_count_ * per_pixel ||
-        statistics.size() != pixel_count_ * film_statistics_per_pixel)
-        throw_runtime_error("the film that is restored has another size");
-    const auto copy = [](const DeviceArray<float>& array, std::span<const float> from) {
-        const auto mapping = array.map(CL_MAP_WRITE, 0, array.size());
-        std::copy(from.begin(), from.end(), mapping.span().begin());
-    };
-    opencl_checked("restoring the film", [&] {
-        for (const Strip& strip : strips_) {
-            copy(strip.sums, sums.subspan(strip.first_pixel * per_pixel, strip.sums.size()));
-            copy(strip.statistics, statistics.subspan(strip.first_pixel * film_statistics_per_pixel,
-                                                      strip.statistics.size()));
-        }
-    });
-}
-
-std::size_t Wavefront::film_float_count() const {
-    return pixel_count_ * (film_layout_.floats_per_pixel() + film_statistics_per_pixel);
-}
-
 std::size_t Wavefront::device_bytes() const {
     return materials_.bytes() + layers_.bytes() + lobes_.bytes() + surfaces_.bytes() +
            walk_parts_.bytes() + walk_chunks_.bytes() + walk_vertices_.bytes() + textures_.bytes() +
            hero_lanes_.bytes() + hero_weights_.bytes() + colours_.bytes() + lights_.bytes() +
            tables_.bytes() + rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() +
            2 * live_[0].bytes() + goes_on_.bytes() + paths_.bytes() + vertices_.bytes() +
-           lobe_weights_.bytes() + radiance_.bytes() + film_float_count() * sizeof(float) +
-           film_bands_.bytes() + film_weights_.bytes() + y_weights_.bytes();
+           lobe_weights_.bytes() + radiance_.bytes() + film_.bytes() + film_bands_.bytes() +
+           film_weights_.bytes() + y_weights_.bytes();
 }
 
 } // namespace reradiant

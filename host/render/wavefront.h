@@ -4,6 +4,7 @@
 #include "host/device/device.h"
 #include "host/device/program.h"
 #include "host/geometry/geometry.h"
+#include "host/render/device_film.h"
 #include "host/render/film_sums.h"
 #include "host/render/ray_sink.h"
 #include "host/render/scene_tables.h"
@@ -51,33 +52,19 @@ public:
     /// Adds samples [first_sample, first_sample + samples) of every pixel to the film.
     void render_pass(std::uint32_t first_sample, std::uint32_t samples);
 
-    /// Calls `use` with the film's sums as they are on the device, mapped for the call.
-    void with_film(const std::function<void(FilmSums)>& use) const;
-    /// Calls `use` with one strip after the other and frees its memory. Nothing can be rendered
-    /// afterwards.
-    void take_film(const std::function<void(const FilmStrip&)>& use);
-    /// Replaces the film's sums by those of an earlier render, of all pixels; their sizes must be
-    /// the film's.
-    void restore_film(std::span<const float> sums, std::span<const float> statistics) const;
-    /// Numbers that the film's sums and statistics hold together.
-    std::size_t film_float_count() const;
+    DeviceFilm& film() { return film_; }
+    const DeviceFilm& film() const { return film_; }
     const WavefrontStatistics& statistics() const { return statistics_; }
     std::size_t device_bytes() const;
 
 private:
-    /// Successive pixels of the film, few enough for any device's largest buffer.
-    struct Strip {
-        std::uint32_t first_pixel, pixels;
-        DeviceArray<float> sums, statistics;
-    };
     struct Batch {
-        const Strip* strip;
+        const DeviceFilm::Strip* strip;
         std::uint32_t first_pixel, pixels, first_sample, samples;
         std::uint32_t paths() const { return pixels * samples; }
     };
 
     void build_kernels(BuildStatistics& build);
-    void make_film();
     void trace_batch(const Batch& batch);
     void trace_paths(const Batch& batch);
     bool walks_fit();
@@ -104,7 +91,7 @@ private:
     /// Kernels that were queued, and where their time goes.
     std::vector<std::pair<cl::Event, double*>> launched_;
 
-    Kernel generate_, shade_, gather_, film_;
+    Kernel generate_, shade_, gather_, film_kernel_;
     DeviceArray<MaterialRecord> materials_;
     DeviceArray<LayerRecord> layers_;
     DeviceArray<LobeRecord> lobes_;
@@ -127,7 +114,7 @@ private:
     DeviceArray<PathState> paths_;
     DeviceArray<VertexRecord> vertices_;
     DeviceArray<float> lobe_weights_, radiance_;
-    std::vector<Strip> strips_;
+    DeviceFilm film_;
     DeviceArray<std::int32_t> film_bands_;
     DeviceArray<float> film_weights_, y_weights_;
 };
