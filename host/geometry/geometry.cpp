@@ -1,5 +1,6 @@
 #include "host/geometry/geometry.h"
 
+#include "host/geometry/embree_callbacks.h"
 #include "host/geometry/embree_version.h"
 #include "host/geometry/surfaces.h"
 
@@ -18,73 +19,10 @@ namespace reradiant {
 
 namespace {
 
-/// Embree's own bounds are single precision: the next number outwards, and a little more because
-/// a flat box is tested with rounding too.
-RTCBounds outer_bounds(const Box& box) {
-    const auto widen = [](double value, double sign) {
-        return static_cast<float>(value + sign * (std::fabs(value) * 2.5e-7 + 1e-35));
-    };
-    RTCBounds bounds{};
-    bounds.lower_x = widen(box.lower.x, -1.0);
-    bounds.lower_y = widen(box.lower.y, -1.0);
-    bounds.lower_z = widen(box.lower.z, -1.0);
-    bounds.upper_x = widen(box.upper.x, 1.0);
-    bounds.upper_y = widen(box.upper.y, 1.0);
-    bounds.upper_z = widen(box.upper.z, 1.0);
-    return bounds;
-}
-
-Ray ray_of(RTCRayN* ray, unsigned int count, unsigned int i) {
-    return {kernels::vec3(RTCRayN_org_x(ray, count, i), RTCRayN_org_y(ray, count, i),
-                          RTCRayN_org_z(ray, count, i)),
-            kernels::vec3(RTCRayN_dir_x(ray, count, i), RTCRayN_dir_y(ray, count, i),
-                          RTCRayN_dir_z(ray, count, i)),
-            RTCRayN_tnear(ray, count, i), RTCRayN_tfar(ray, count, i)};
-}
-
 Ray ray_of(const RayRecord& r) {
     return {kernels::vec3(r.origin_x, r.origin_y, r.origin_z),
             kernels::vec3(r.direction_x, r.direction_y, r.direction_z), r.t_near,
             std::numeric_limits<double>::infinity()};
-}
-
-template <typename Primitive>
-const Primitive& primitive_of(const void* user, unsigned int index) {
-    return static_cast<const OwnedPrimitives<Primitive>*>(user)->primitives[index];
-}
-
-template <typename Primitive>
-void bounds_callback(const RTCBoundsFunctionArguments* arguments) {
-    *arguments->bounds_o = outer_bounds(
-        primitive_of<Primitive>(arguments->geometryUserPtr, arguments->primID).bounds());
-}
-
-template <typename Primitive>
-void intersect_callback(const RTCIntersectFunctionNArguments* arguments) {
-    const auto& primitive = primitive_of<Primitive>(arguments->geometryUserPtr, arguments->primID);
-    const unsigned int count = arguments->N;
-    RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, count);
-    RTCHitN* hits = RTCRayHitN_HitN(arguments->rayhit, count);
-    for (unsigned int i = 0; i < count; ++i) {
-        if (arguments->valid[i] == 0)
-            continue;
-        const double t = primitive.intersect(ray_of(rays, count, i));
-        if (t < 0.0)
-            continue;
-        RTCRayN_tfar(rays, count, i) = static_cast<float>(t);
-        RTCHitN_geomID(hits, count, i) = arguments->geomID;
-        RTCHitN_primID(hits, count, i) = arguments->primID;
-        RTCHitN_instID(hits, count, i, 0) = arguments->context->instID[0];
-    }
-}
-
-template <typename Primitive>
-void occluded_callback(const RTCOccludedFunctionNArguments* arguments) {
-    const auto& primitive = primitive_of<Primitive>(arguments->geometryUserPtr, arguments->primID);
-    for (unsigned int i = 0; i < arguments->N; ++i)
-        if (arguments->valid[i] != 0 &&
-            primitive.intersect(ray_of(arguments->ray, arguments->N, i)) >= 0.0)
-            RTCRayN_tfar(arguments->ray, arguments->N, i) = -std::numeric_limits<float>::infinity();
 }
 
 bool is_traceable(const RayRecord& r) {
