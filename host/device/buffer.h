@@ -69,13 +69,13 @@ public:
             if (is_shared()) {
                 queue.finish();
                 data_ = static_cast<T*>(array.storage_->shared) + first;
-                return;
+            } else if (count > 0) { // an empty range cannot be mapped
+                data_ = static_cast<T*>(queue.enqueueMapBuffer(
+                    array.buffer(), CL_TRUE, flags, first * sizeof(T), count * sizeof(T)));
             }
-            data_ = static_cast<T*>(queue.enqueueMapBuffer(array.buffer(), CL_TRUE, flags,
-                                                           first * sizeof(T), count * sizeof(T)));
         }
         ~Mapping() {
-            if (!is_shared())
+            if (!is_shared() && data_ != nullptr)
                 clEnqueueUnmapMemObject(array_.device_->queue()(), array_.buffer()(), data_, 0,
                                         nullptr, nullptr);
         }

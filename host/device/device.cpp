@@ -138,10 +138,11 @@ std::vector<DeviceInfo> list_devices() {
     return infos;
 }
 
-Device::Device(const std::string& name_or_index) {
+Device::Device(const std::string& name_or_index, bool may_share_memory) {
     opencl_checked("opening the device", [&] {
         FoundDevice found = choose(name_or_index);
         info_ = found.info;
+        info_.shares_memory = info_.shares_memory && may_share_memory;
         device_ = found.device;
         context_ = cl::Context(device_);
         queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE);

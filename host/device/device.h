@@ -30,8 +30,9 @@ std::vector<DeviceInfo> list_devices();
 class Device {
 public:
     /// By index or by a part of its name (case-insensitive); empty: the first. Run-time Error
-    /// that lists the devices when there is none, or none that fits.
-    explicit Device(const std::string& name_or_index);
+    /// that lists the devices when there is none, or none that fits. Without `may_share_memory`
+    /// arrays are mapped also where that is not needed.
+    explicit Device(const std::string& name_or_index, bool may_share_memory = true);
 
     const DeviceInfo& info() const { return info_; }
     const cl::Device& handle() const { return device_; }

@@ -7,12 +7,16 @@ namespace {
 
 using namespace test;
 
-std::vector<float> rendered(RenderOptions options) {
+Scene small_scene() {
     Scene scene = sphere_scene(fluorescent({layer(1.5, 0.2)}, shifted_matrix()), 20, 14);
     scene.lights = {environment(Spectrum::constant(0.3)),
                     RectangleLight{{0, 4, 1}, {2, 0, 0}, {0, 0, 2}, Spectrum::constant(5.0)}};
+    return scene;
+}
+
+std::vector<float> rendered(RenderOptions options, const Device& on = device()) {
     options.samples = 11;
-    return render(scene, device(), options).image.values;
+    return render(small_scene(), on, options).image.values;
 }
 
 TEST(Determinism, SameSeedGivesTheSameImageWhateverTheBatch) {
@@ -29,6 +33,17 @@ TEST(Determinism, SameSeedGivesTheSameImageWhateverTheThreads) {
     RenderOptions options;
     options.threads = 1;
     EXPECT_EQ(rendered(options), reference);
+}
+
+/// As on a device with memory of its own: also where there is nothing to map, in the dark.
+TEST(Determinism, MappedMemoryGivesTheImageOfSharedMemory) {
+    const Device mapping("", false);
+    EXPECT_FALSE(mapping.info().shares_memory);
+    EXPECT_EQ(rendered({}, mapping), rendered({}));
+    Scene dark = small_scene();
+    dark.lights.clear();
+    const std::vector<float> black = render(dark, mapping, {}).image.values;
+    EXPECT_EQ(black, std::vector<float>(black.size(), 0.0f));
 }
 
 TEST(Determinism, AnotherSeedGivesAnotherImage) {
