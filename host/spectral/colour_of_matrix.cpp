@@ -124,13 +124,18 @@ Sums sum_over_nanometres(const WavelengthGrid& bands, const Exitance& exitance,
     return sums;
 }
 
+/// Undefined (NaN) where the light has less than 1e-9 of its largest value: no instrument would see
+/// it, and the tail of a Gaussian lamp would give factors of 1e300.
 void fill_radiance_factors(MatrixColour& colour, const Exitance& exitance,
                            const Spectrum& illuminant) {
+    const std::vector<double> lights = illuminant.at(colour.nm);
+    const double dark =
+        lights.empty() ? 0.0 : 1e-9 * *std::max_element(lights.begin(), lights.end());
     for (std::size_t o = 0; o < colour.nm.size(); ++o) {
         const auto row = static_cast<Eigen::Index>(o);
-        const double light = illuminant(colour.nm[o]);
+        const double light = lights[o];
         colour.reflected.push_back(exitance.reflectance[row]);
-        colour.luminescent.push_back(light > 0.0 ? exitance.luminescent[row] / light : nan_value);
+        colour.luminescent.push_back(light > dark ? exitance.luminescent[row] / light : nan_value);
         colour.total.push_back(colour.reflected.back() + colour.luminescent.back());
     }
 }

@@ -1,4 +1,5 @@
-# The Debian package holds program, library, headers and data, and names what it depends on.
+# The Debian package holds program, library, headers and data, and names what it depends on; the example
+# links against what it unpacks to, by CMake and by pkg-config.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 run(said cpack --config ${BUILD}/CPackConfig.cmake -B ${WORK})
@@ -15,3 +16,19 @@ endforeach()
 if(files MATCHES "/debian/|_library")
   message(FATAL_ERROR "the package holds what it should not:\n${files}")
 endif()
+
+set(root ${WORK}/root)
+run(said dpkg-deb --extract ${package} ${root})
+set(example ${SOURCE}/tools/examples/link-library)
+run(said ${CMAKE_COMMAND} -S ${example} -B ${WORK}/cmake -DCMAKE_PREFIX_PATH=${root}/usr)
+run(said ${CMAKE_COMMAND} --build ${WORK}/cmake)
+run(said ${WORK}/cmake/link-library)
+expect("${said}" "T 0.960000, r 0.596346\n")
+file(GLOB_RECURSE description ${root}/*/reradiant.pc)
+get_filename_component(folder ${description} DIRECTORY)
+run(flags pkg-config --with-path=${folder} --cflags --libs reradiant)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+get_filename_component(library ${folder} DIRECTORY)
+run(said c++ ${example}/main.cpp -o ${WORK}/by-pkg-config ${flags} -Wl,-rpath,${library})
+run(said ${WORK}/by-pkg-config)
+expect("${said}" "T 0.960000, r 0.596346\n")

@@ -195,3 +195,18 @@ TEST(ColourOfMatrix, BandsOutsideTheVisibleAreRefused) {
     infrared.values.setIdentity(3, 3);
     EXPECT_THROW(colour_under(infrared, "D65"), std::invalid_argument);
 }
+
+TEST(ColourOfMatrix, NoRadianceFactorWhereTheLampIsDark) {
+    // The tail of the lamp is 1e-300 at 600 nm, where the orange shines.
+    const Spectrum lamp = Spectrum::gaussian(405.0, 5.0, 1.0);
+    const MatrixColour colour =
+        colour_of_matrix(shipped("synthetic-orange.csv"), lamp, ColourSum::Bands);
+    int undefined = 0;
+    for (const double factor : colour.total) {
+        undefined += std::isnan(factor) ? 1 : 0;
+        EXPECT_FALSE(std::abs(factor) > 1e10) << factor;
+    }
+    EXPECT_GT(undefined, 10);
+    EXPECT_LT(undefined, static_cast<int>(colour.total.size()));
+    EXPECT_GT(colour.xyz[1], 0.0);
+}
