@@ -48,6 +48,9 @@ private:
 /// Run-time Error when the device cannot allocate so much in one piece.
 void check_allocation(const Device& device, std::size_t bytes);
 
+/// Input Error of the option --double when the device computes in single precision only.
+void check_double(const DeviceInfo& device);
+
 /// Runs `action`; an OpenCL error becomes a run-time Error that names `what` and the code.
 void opencl_checked(const std::string& what, const std::function<void()>& action);
 /// "CL_INVALID_WORK_GROUP_SIZE" and so on; "error -123" for unknown codes.
