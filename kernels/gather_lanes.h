@@ -57,18 +57,24 @@ uint path_lane(const GatherContext* context, uint place) {
 }
 #endif
 
+// Tables hold shares. Beside a kink, such as that where the residual ends, a cubic dips below zero
+// and would take light away; comparing instead of fmax keeps a NaN.
+
 float grey_lookup(__global const float* table, TableStencil s) {
-    return s.w0 * table[s.node] + s.w1 * table[s.node + 1u] + s.w2 * table[s.node + 2u] +
-           s.w3 * table[s.node + 3u];
+    const float value = s.w0 * table[s.node] + s.w1 * table[s.node + 1u] +
+                        s.w2 * table[s.node + 2u] + s.w3 * table[s.node + 3u];
+    return value < 0.0f ? 0.0f : value;
 }
 
 /// Value of a table by lanes, [phase][node][lane], for one vector of them.
 Lanes spectral_lookup(const GatherContext* context, uint offset, TableStencil s, uint chunk) {
     __global const float* rows =
         context->tables + offset + ((size_t)context->phase * TABLE_NODES + s.node) * LANES;
-    return s.w0 * path_row(context, rows, chunk) + s.w1 * path_row(context, rows + LANES, chunk) +
-           s.w2 * path_row(context, rows + 2 * LANES, chunk) +
-           s.w3 * path_row(context, rows + 3 * LANES, chunk);
+    const Lanes value = (float)s.w0 * path_row(context, rows, chunk) +
+                        (float)s.w1 * path_row(context, rows + LANES, chunk) +
+                        (float)s.w2 * path_row(context, rows + 2 * LANES, chunk) +
+                        (float)s.w3 * path_row(context, rows + 3 * LANES, chunk);
+    return value < 0.0f ? (Lanes)(0.0f) : value;
 }
 
 /// Table value for one vector of lanes: the same number for a grey stack.

@@ -74,7 +74,7 @@ Lanes top_reflectance(const GatherContext* context, Vec3 wi, Vec3 wo, uint chunk
 #if FEATURE_DISPERSION || FEATURE_TABULATED_REFLECTANCE
     const LayerRecord top = context->layers[0];
     const Vec3 h = vec3_normalise(vec3_add(wi, wo));
-    const float cos_h = fmax(vec3_dot(wo, h), 0.0f);
+    const float cos_h = fmax((float)vec3_dot(wo, h), 0.0f);
 #if FEATURE_TABULATED_REFLECTANCE
     if (top.reflectance != NO_INDEX)
         return facet_reflectance(context, top.reflectance, cos_h, chunk);
@@ -103,7 +103,7 @@ Lanes model_a_tabulated(const GatherContext* context, LobeRecord lobe, Vec3 wi, 
         __global const float* slab = context->tables + lobe.slab + context->phase * LANES;
         const Lanes depth = path_row(context, slab, chunk);
         const Lanes albedo = path_row(context, slab + (size_t)context->phases * LANES, chunk);
-        return -albedo * expm1(-depth * (1.0f / facet.wi.z + 1.0f / facet.wo.z));
+        return -albedo * expm1(-depth * (float)(REAL(1.0) / facet.wi.z + REAL(1.0) / facet.wo.z));
     }
 #endif
 #if FEATURE_TABULATED_REFLECTANCE

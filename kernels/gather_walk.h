@@ -27,7 +27,7 @@ void walk_substrate(const GatherContext* context, Lanes* radiance) {
     Lanes emitted[PATH_CHUNKS];
     substrate(context, radiance, radiance, emitted);
     for (uint c = 0u; c < PATH_CHUNKS; ++c)
-        radiance[c] = PI_REAL * emitted[c];
+        radiance[c] = (float)PI_REAL * emitted[c];
 }
 
 /// What one event takes from the lanes of `light` or of the path.

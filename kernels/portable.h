@@ -6,7 +6,8 @@
 
 #ifdef __OPENCL_VERSION__
 
-// `check --double` asks what single precision costs in digits and saves in time.
+// `check --double` and `render --double` ask what single precision costs in digits and saves in
+// time.
 #ifdef KERNELS_IN_DOUBLE
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 typedef double real;

@@ -225,8 +225,10 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
     state.throughput *= choice.albedo;
     const real survival = depth + 1u < min_depth ? 1.0f : fmin(1.0f, fmax(state.throughput, 0.05f));
     if (u.d < survival) {
-        const RayRecord next = sample_direction(point, stack, &choice, u, survival, &vertex,
-                                                next_lobes, &state.bsdf_pdf);
+        real density = state.bsdf_pdf; // as it was where no direction is found
+        const RayRecord next =
+            sample_direction(point, stack, &choice, u, survival, &vertex, next_lobes, &density);
+        state.bsdf_pdf = density;
         rays[path] = next;
         goes_on[item] = next.t_far >= 0.0f;
         state.throughput /= survival;

@@ -24,7 +24,7 @@ typedef struct {
     const WalkArrival* arrivals; ///< of the light (WALK_PLACES)
     WalkWriter writer;
     WalkRandom random;
-    float weight;
+    real weight;
     float expected; ///< weight times the mean of what events take from the lanes
     int is_delta;   ///< smooth surfaces alone so far
     uint steps;

@@ -192,6 +192,9 @@ void add_sampling_options(CLI::App& app, RenderCommand& command) {
     app.add_option("--variance", command.variance, "bands: variance per band, too")
         ->check(CLI::IsMember({"bands"}));
     app.add_flag("--all-features", command.render.all_features, "specialise nothing");
+    app.add_flag("--double", command.render.in_double,
+                 "kernels in double precision, to see what single costs (sums over wavelengths and "
+                 "what is stored stay single)");
     app.add_option("--batch", command.render.batch_paths,
                    "paths in flight; the image does not depend on it")
         ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24));

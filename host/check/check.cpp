@@ -217,11 +217,8 @@ bool CheckReport::passed() const {
 CheckReport check_device(const Device& device, const CheckOptions& options,
                          const std::function<void(const FunctionReport&)>& progress) {
     const Clock::time_point start = Clock::now();
-    if (options.in_double && !device.info().has_double)
-        throw_input_error(
-            {"--double"},
-            fmt::format("the device '{}' has no double precision", device.info().name),
-            "take another --device, or leave --double out");
+    if (options.in_double)
+        check_double(device.info());
     const std::vector<CheckedFunction> functions = chosen_functions(options.only);
     CheckReport report;
     opencl_checked("checking", [&] {

@@ -169,6 +169,13 @@ void check_memory(const Device& device, std::size_t bytes) {
             "make the film smaller, take fewer bands or another --device");
 }
 
+void check_double(const DeviceInfo& device) {
+    if (!device.has_double)
+        throw_input_error({"--double"},
+                          fmt::format("the device '{}' has no double precision", device.name),
+                          "take another --device, or leave --double out");
+}
+
 void opencl_checked(const std::string& what, const std::function<void()>& action) {
     try {
         action();

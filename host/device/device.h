@@ -51,6 +51,9 @@ void check_allocation(const Device& device, std::size_t bytes);
 /// Run-time Error when arrays of so many bytes together are more than the device's memory.
 void check_memory(const Device& device, std::size_t bytes);
 
+/// Input Error of the option --double when the device computes in single precision only.
+void check_double(const DeviceInfo& device);
+
 /// Runs `action`; an OpenCL error becomes a run-time Error that names `what` and the code.
 void opencl_checked(const std::string& what, const std::function<void()>& action);
 /// "CL_INVALID_WORK_GROUP_SIZE" and so on; "error -123" for unknown codes.

@@ -90,6 +90,8 @@ KernelDefines RenderFeatures::defines() const {
     defines.emplace_back("LOBES", lobes);
     defines.emplace_back("HERO", hero);
     defines.emplace_back("WALK_LAYERS", walk_layers);
+    if (in_double)
+        defines.emplace_back("KERNELS_IN_DOUBLE", 1);
     return defines;
 }
 
@@ -98,6 +100,7 @@ std::map<std::string, bool> RenderFeatures::listed() const {
     for (const FeatureBit& bit : feature_bits)
         list[bit.name] = this->*bit.value;
     list["hero"] = hero > 0;
+    list["double"] = in_double;
     return list;
 }
 
@@ -108,6 +111,8 @@ std::vector<std::string> RenderFeatures::left_out() const {
             lines.push_back(fmt::format("{}: {}", bit.name, bit.why_off));
     if (hero == 0)
         lines.push_back("hero: every path carries all wavelengths");
+    if (!in_double)
+        lines.push_back("double: not asked for");
     return lines;
 }
 

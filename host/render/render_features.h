@@ -18,8 +18,9 @@ struct RenderFeatures {
     bool environment_image = false, textures = false, reflectance_image = false;
     bool scatter = false, band_variance = false;
     int chunks = 1, film_chunks = 1, lobes = 0;
-    int hero = 0;        ///< wavelengths of a path's set; 0: all lanes
-    int walk_layers = 1; ///< most layers of a material that is walked through
+    int hero = 0;           ///< wavelengths of a path's set; 0: all lanes
+    int walk_layers = 1;    ///< most layers of a material that is walked through
+    bool in_double = false; ///< directions, probabilities and factors in double precision
 
     static RenderFeatures all();
     /// All bits off but one; std::invalid_argument lists the names when there is none such.

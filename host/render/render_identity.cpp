@@ -55,7 +55,8 @@ SampleIdentity sampling_identity(const Scene& scene, const RenderOptions& option
             {"hero wavelengths", std::to_string(options.wavelengths.hero_count)},
             {"comb phase", options.wavelengths.centred ? "centre" : "random"},
             {"variance per band", options.band_variance ? "on" : "off"},
-            {"specialisation", options.all_features ? "off" : "on"}};
+            {"specialisation", options.all_features ? "off" : "on"},
+            {"precision", options.in_double ? "double" : "single"}};
 }
 
 SampleIdentity render_identity(const Scene& scene, const Device& device,

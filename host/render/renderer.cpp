@@ -63,6 +63,7 @@ SceneTables prepare_tables(const Scene& scene, const WavelengthPlan& plan,
         film_layout(plan, options.band_variance || at_least.band_variance, at_least.scatter);
     tables.features.scatter = layout.scatter;
     tables.features.band_variance = layout.band_variance;
+    tables.features.in_double = options.in_double;
     return tables;
 }
 
@@ -255,6 +256,8 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
                     const std::function<bool(const RenderProgress&)>& progress,
                     const RenderObserver& observe) {
     const Clock::time_point start = Clock::now();
+    if (options.in_double)
+        check_double(device.info());
     RenderResult result;
     result.plan =
         plan_wavelengths(scene, options.bands.value_or(film_bands(scene)), options.wavelengths);

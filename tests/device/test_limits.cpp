@@ -60,6 +60,20 @@ TEST(DeviceLimits, Case39BuffersAreTheDriversOwnAndAligned) {
     }
 }
 
+TEST(DeviceLimits, DoubleIsRefusedWhereThereIsNone) {
+    DeviceInfo single;
+    single.name = "small";
+    try {
+        check_double(single);
+        ADD_FAILURE() << "double was not refused";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exit_code(), 2);
+        EXPECT_NE(std::string(error.what()).find("'small' has no double"), std::string::npos);
+    }
+    single.has_double = true;
+    EXPECT_NO_THROW(check_double(single));
+}
+
 TEST(DeviceLimits, Case42AllocationBeyondTheLimitNamesIt) {
     const std::size_t most = device().info().max_allocation_bytes;
     const std::string text =

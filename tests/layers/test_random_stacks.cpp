@@ -99,6 +99,20 @@ TEST(RandomStacks, SmoothOnesConserveEnergyAtEveryAngle) {
     expect_sound(is_full_run() ? 1000000 : 20000, is_full_run() ? 20 : 10, smooth_stack);
 }
 
+TEST(RandomStacks, SmoothCoatOverARoughOneMakesNoLight) {
+    // number 1232 of the test below: fits of shares whose sum is 1 came to 1 + 2e-9
+    StackValues stack(2);
+    stack[0].ior = 1.3;
+    stack[1].ior = 1.5;
+    stack[1].alpha = 0.6;
+    stack[1].distribution = Distribution::Beckmann;
+    const auto transport = adding_transport(stack);
+    for (int i = 0; i <= 1000; ++i) {
+        const double c = i / 1000.0;
+        EXPECT_LE(transport->transmission(c) + transport->specular_albedo(c), 1.0 + 1e-13) << c;
+    }
+}
+
 TEST(RandomStacks, RoughOnesConserveEnergyAtEveryAngle) {
     expect_sound(is_full_run() ? 2000 : 6, 500, rough_stack);
 }

@@ -1,6 +1,7 @@
 // What a scene does not need costs nothing, and edits of numbers build nothing.
 #include "host/device/program.h"
 #include "host/render/render_features.h"
+#include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -84,6 +85,46 @@ TEST(LeavingOut, AllFeaturesGiveTheSameImage) {
         for (std::size_t i = 0; i < some.image.values.size(); ++i)
             EXPECT_NEAR(all.image.values[i], some.image.values[i],
                         1e-4f * (some.image.values[i] + 0.1f));
+    }
+}
+
+/// Bytes of all programs under some defines.
+std::size_t program_bytes(const KernelDefines& defines) {
+    BuildStatistics statistics;
+    for (const char* file :
+         {"kernels/generate.cl", "kernels/shade.cl", "kernels/gather.cl", "kernels/film.cl"})
+        build_program(device(), file, defines, &statistics);
+    return statistics.binary_bytes;
+}
+
+TEST(LeavingOut, EveryBitAddsCodeAndNoneLeavesAnyWhenOff) {
+    // what the bit itself stands on, else it has nothing to do
+    const std::map<std::string, std::vector<std::string>> needs = {
+        {"FEATURE_DENSE_MATRIX", {"FEATURE_FLUORESCENCE"}},
+        {"FEATURE_DISPERSION", {"FEATURE_ROUGH"}},
+        {"FEATURE_TABULATED_REFLECTANCE", {"FEATURE_ROUGH"}},
+        {"FEATURE_WEIDLICH_WILKIE", {"FEATURE_DEEPER_LOBES"}},
+        {"FEATURE_SCATTERING_SLABS", {"FEATURE_DEEPER_LOBES", "FEATURE_WEIDLICH_WILKIE"}},
+        {"FEATURE_BAND_VARIANCE", {"FEATURE_SCATTER"}}};
+    RenderFeatures none;
+    none.lobes = 1;
+    const auto with = [&](const std::vector<std::string>& on) {
+        KernelDefines defines = none.defines();
+        for (auto& [name, value] : defines)
+            if (std::find(on.begin(), on.end(), name) != on.end())
+                value = 1;
+        return program_bytes(defines);
+    };
+    const std::vector<std::string> few = {"FEATURE_FLUORESCENCE", "FEATURE_SMOOTH", "FEATURE_LENS"};
+    for (const auto& [name, value] : none.defines()) {
+        const bool is_of_few = std::find(few.begin(), few.end(), name) != few.end();
+        if (name.rfind("FEATURE_", 0) != 0 || (!is_full_run() && !is_of_few))
+            continue;
+        std::vector<std::string> on =
+            needs.contains(name) ? needs.at(name) : std::vector<std::string>{};
+        const std::size_t before = with(on);
+        on.push_back(name);
+        EXPECT_GT(with(on), before) << name;
     }
 }
 
