@@ -30,7 +30,7 @@ struct RenderOptions {
     WavelengthOptions wavelengths;
     bool band_variance = false;
     bool all_features = false;
-    std::string also_on; ///< one feature (RenderFeatures) that kernels get, needed or not
+    std::string also_on;    ///< one feature (RenderFeatures) that kernels get, needed or not
     bool in_double = false; ///< kernels compute in double what they do not keep, for comparison
     std::size_t batch_paths = 1u << 15;
     std::uint64_t memory_limit_bytes = 0; ///< 0: 80 % of the machine's memory
