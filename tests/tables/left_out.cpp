@@ -190,7 +190,7 @@ void print_features(const Device& device, const EmptyCache& cache) {
         static_cast<double>(without.build.binary_bytes) / 1024.0, without.build.seconds,
         mebibytes(without.device_bytes));
     for (const auto& [feature, on] : without.features)
-        if (!on && feature != "hero") // hero is another estimator
+        if (!on && feature != "hero" && feature != "double") // no bits: another estimator, type
             print_feature(feature, scene, device, cache, without);
 }
 
