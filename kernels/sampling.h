@@ -35,8 +35,8 @@ DEVICE_FUNCTION Vec3 sampling_to_world(Frame f, Vec3 v) {
 /// Cosine and sine of 2 pi u, 0 <= u <= 1, as x and y.
 #if defined(__OPENCL_VERSION__) && !defined(KERNELS_IN_DOUBLE)
 /// The nearest quarter turn comes off without rounding; for the rest, of at most pi / 4, the
-/// polynomials of Cephes' sinf and cosf (Moshier 1992) are right to 2^-24. A tenth of the time of
-/// the built-in functions, which must reduce any argument.
+/// polynomials of Cephes' sinf and cosf (Moshier 1992) are right to 2^-24. The built-in functions
+/// must reduce any argument.
 Vec3 sampling_circle(float u) {
     const float quarters = floor(4.0f * u + 0.5f);
     const float t = (4.0f * u - quarters) * (0.5f * PI_REAL), t2 = t * t;

@@ -10,26 +10,32 @@
 namespace reradiant {
 
 /// A buffer, in memory that the host reaches without mapping where the device has such.
-struct DeviceStorage {
-    DeviceStorage(const Device& device, std::size_t bytes) : context(device.context()) {
-        if (device.info().shares_memory)
-            shared =
-                clSVMAlloc(context(), CL_MEM_READ_WRITE | CL_MEM_SVM_FINE_GRAIN_BUFFER, bytes, 0);
-        buffer = shared != nullptr
-                     ? cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, shared)
-                     : cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
-    }
-    ~DeviceStorage() {
-        buffer = cl::Buffer(); // before what it lies in
-        if (shared != nullptr)
-            clSVMFree(context(), shared);
-    }
-    DeviceStorage(const DeviceStorage&) = delete;
-    DeviceStorage& operator=(const DeviceStorage&) = delete;
+class DeviceStorage {
+public:
+    DeviceStorage(const Device& device, std::size_t bytes)
+        : shared_(device.info().shares_memory ? shared_memory(device.context(), bytes) : nullptr,
+                  Release{device.context()}),
+          buffer_(shared_ ? cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR,
+                                       bytes, shared_.get())
+                          : cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR,
+                                       bytes)) {}
 
-    cl::Context context;
-    void* shared = nullptr;
-    cl::Buffer buffer;
+    const cl::Buffer& buffer() const { return buffer_; }
+    /// What the buffer lies in, or null where it must be mapped.
+    void* shared() const { return shared_.get(); }
+
+private:
+    struct Release {
+        cl::Context context;
+        void operator()(void* memory) const { clSVMFree(context(), memory); }
+    };
+    /// Null when there is none: then a buffer of the driver's may still fit, or say what is wrong.
+    static void* shared_memory(const cl::Context& context, std::size_t bytes) {
+        return clSVMAlloc(context(), CL_MEM_READ_WRITE | CL_MEM_SVM_FINE_GRAIN_BUFFER, bytes, 0);
+    }
+
+    std::unique_ptr<void, Release> shared_;
+    cl::Buffer buffer_; // goes before what it lies in
 };
 
 /// An array that host and device use in turn. On devices that share memory with the host no data
@@ -51,7 +57,7 @@ public:
                                               values.data());
     }
 
-    const cl::Buffer& buffer() const { return storage_->buffer; }
+    const cl::Buffer& buffer() const { return storage_->buffer(); }
     std::size_t size() const { return count_; }
     std::size_t bytes() const { return count_ * sizeof(T); }
 
@@ -68,7 +74,7 @@ public:
             const cl::CommandQueue& queue = array.device_->queue();
             if (is_shared()) {
                 queue.finish();
-                data_ = static_cast<T*>(array.storage_->shared) + first;
+                data_ = static_cast<T*>(array.storage_->shared()) + first;
             } else if (count > 0) { // an empty range cannot be mapped
                 data_ = static_cast<T*>(queue.enqueueMapBuffer(
                     array.buffer(), CL_TRUE, flags, first * sizeof(T), count * sizeof(T)));
@@ -84,7 +90,7 @@ public:
         std::span<T> span() const { return {data_, count_}; }
 
     private:
-        bool is_shared() const { return array_.storage_->shared != nullptr; }
+        bool is_shared() const { return array_.storage_->shared() != nullptr; }
 
         const DeviceArray& array_;
         std::size_t count_;

@@ -122,6 +122,13 @@ void describe_machine_without_sys() {
     ::setenv("HWLOC_THISSYSTEM", "1", 0);
 }
 
+[[noreturn]] void throw_beyond(const Device& device, const std::string& needed,
+                               const std::string& most) {
+    throw_runtime_error(fmt::format("{}, the OpenCL device '{}' allocates at most {}", needed,
+                                    device.info().name, most),
+                        "make the film smaller, take fewer bands or another --device");
+}
+
 } // namespace
 
 void prepare_opencl(int threads) {
@@ -150,23 +157,15 @@ Device::Device(const std::string& name_or_index, bool may_share_memory) {
 }
 
 void check_allocation(const Device& device, std::size_t bytes) {
-    const DeviceInfo& info = device.info();
-    if (bytes > info.max_allocation_bytes)
-        throw_runtime_error(
-            fmt::format("an array of {} bytes is needed, the OpenCL device '{}' allocates at most "
-                        "{} at once",
-                        bytes, info.name, info.max_allocation_bytes),
-            "make the film smaller, take fewer bands or another --device");
+    if (bytes > device.info().max_allocation_bytes)
+        throw_beyond(device, fmt::format("an array of {} bytes is needed", bytes),
+                     fmt::format("{} at once", device.info().max_allocation_bytes));
 }
 
 void check_memory(const Device& device, std::size_t bytes) {
-    const DeviceInfo& info = device.info();
-    if (bytes > info.memory_bytes)
-        throw_runtime_error(
-            fmt::format("arrays of {} bytes are needed, the OpenCL device '{}' allocates at most "
-                        "{} in all",
-                        bytes, info.name, info.memory_bytes),
-            "make the film smaller, take fewer bands or another --device");
+    if (bytes > device.info().memory_bytes)
+        throw_beyond(device, fmt::format("arrays of {} bytes are needed", bytes),
+                     fmt::format("{} in all", device.info().memory_bytes));
 }
 
 void check_double(const DeviceInfo& device) {

@@ -248,8 +248,9 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
     const std::uint64_t paths =
         options.batch_paths * (depth * vertex + models.path + lanes * 4 + sizeof(RayRecord) +
                                sizeof(HitRecord) + sizeof(PathState));
-    // The film is mapped where it is and goes as the image comes.
-    return std::max(film, image) + image / 8 + paths;
+    // The film goes as the image comes, but for observers of passes, who see an image beside it; a
+    // checkpoint is read as a whole.
+    return film + image + (options.resume ? film : 0) + paths;
 }
 
 RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,

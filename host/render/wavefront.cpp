@@ -190,11 +190,12 @@ void Wavefront::trace(const Batch& batch, std::uint32_t depth) {
     const auto rays = rays_.map(CL_MAP_READ, 0, batch.paths());
     const auto hits = hits_.map(CL_MAP_WRITE, 0, batch.paths());
     const auto live = live_[depth % 2].map(CL_MAP_READ, 0, live_count_[depth % 2]);
-    const std::size_t before = depth > 0 && samples_lights_ ? depth - 1 : 0;
-    const std::uint32_t shadows = depth > 0 && samples_lights_ ? live_count_[before % 2] : 0;
+    const bool has_shadows = depth > 0 && samples_lights_;
+    const std::size_t before = has_shadows ? depth - 1 : 0;
     const auto shadow_rays = shadow_rays_.map(CL_MAP_READ | CL_MAP_WRITE, before * capacity_,
-                                              samples_lights_ ? batch.paths() : 0);
-    const auto shadow_live = live_[before % 2].map(CL_MAP_READ, 0, shadows);
+                                              has_shadows ? batch.paths() : 0);
+    const auto shadow_live =
+        live_[before % 2].map(CL_MAP_READ, 0, has_shadows ? live_count_[before % 2] : 0);
     const RaysToHit to_hit{rays.span(), hits.span(), live.span(), depth == 0};
     const RaysToBlock to_block{shadow_rays.span(), shadow_live.span()};
     show_rays(to_hit, to_block);

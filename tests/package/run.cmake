@@ -14,3 +14,24 @@ function(expect text pattern)
     message(FATAL_ERROR "expected '${pattern}' in:\n${text}")
   endif()
 endfunction()
+
+# link_example(PREFIX FOLDER): builds and runs the example against what lies under PREFIX, by CMake and
+# by pkg-config; works in FOLDER.
+function(link_example prefix folder)
+  set(example ${SOURCE}/tools/examples/link-library)
+  # T = 4 n / (n + 1)^2 at n = 1.5; r as README has it.
+  set(expected "T 0.960000, r 0.596346\nXYZ [0-9.]+ [0-9.]+ [0-9.]+")
+  run(said ${CMAKE_COMMAND} -S ${example} -B ${folder}/cmake -DCMAKE_PREFIX_PATH=${prefix})
+  run(said ${CMAKE_COMMAND} --build ${folder}/cmake)
+  run(said ${folder}/cmake/link-library)
+  expect("${said}" "${expected}")
+
+  file(GLOB_RECURSE description ${prefix}/*/reradiant.pc)
+  get_filename_component(description_folder ${description} DIRECTORY)
+  run(flags pkg-config --with-path=${description_folder} --cflags --libs reradiant)
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  get_filename_component(library ${description_folder} DIRECTORY)
+  run(said c++ ${example}/main.cpp -o ${folder}/by-pkg-config ${flags} -Wl,-rpath,${library})
+  run(said ${folder}/by-pkg-config)
+  expect("${said}" "${expected}")
+endfunction()
