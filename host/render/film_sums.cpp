@@ -116,18 +116,20 @@ double mean_radiance(FilmSums film, const FilmLayout& layout, int bands, std::ui
 
 /// Half the difference of the even and the odd samples' means in one band: its square has the
 /// variance of the mean as expectation.
-double half_difference(const PixelSums& sums, std::size_t band, double n, std::uint32_t samples) {
-    // With an odd count the even half has one sample more.
+double half_difference(const PixelSums& sums, const FilmLayout& layout, std::size_t band, double n,
+                       std::uint32_t samples) {
+    // With an odd count the half of the first sample has one more.
     const double one_more = samples % 2 == 1 ? sums.sum[band] / n : 0.0;
-    return (sums.alternating[band] - one_more) / n;
+    return (sums.alternating[band] + (layout.begins_odd ? one_more : -one_more)) / n;
 }
 
 /// d^2 / (value^2 + floor) of one pixel, added over its bands.
-double squared_error(const PixelSums& sums, double n, std::uint32_t samples, double floor) {
+double squared_error(const PixelSums& sums, const FilmLayout& layout, double n,
+                     std::uint32_t samples, double floor) {
     double total = 0.0;
     for (std::size_t b = 0; b < sums.sum.size() && n > 0.0; ++b) {
         const double value = sums.sum[b] / n;
-        const double d = half_difference(sums, b, n, samples);
+        const double d = half_difference(sums, layout, b, n, samples);
         if (value * value + floor > 0.0)
             total += d * d / (value * value + floor);
     }
@@ -242,27 +244,27 @@ void FilmResolver::add(const FilmStrip& strip) {
     image_.values.resize(entries);
     image_.variance_bands.resize(by_band ? entries : 0);
     halves_bands_.resize(image_.variance_bands.size());
-    for_each_pixel(strip, layout_, static_cast<int>(bands),
-                   [&](std::size_t at, const PixelSums& sums, std::size_t) {
-                       const std::size_t pixel = strip.first_pixel + at;
-                       const double n = accepted(strip, at, samples_);
-                       double luminance = 0.0;
-                       for (std::size_t b = 0; b < bands; ++b) {
-                           const double d = n > 0.0 ? half_difference(sums, b, n, samples_) : 0.0;
-                           luminance += y_weights_[b] * d;
-                           image_.values[pixel * bands + b] =
-                               static_cast<float>(n > 0.0 ? sums.sum[b] / n : 0.0);
-                           if (by_band) {
-                               halves_bands_[pixel * bands + b] = static_cast<float>(d * d);
-                               image_.variance_bands[pixel * bands + b] = static_cast<float>(
-                                   variance_of_mean(sums.sum[b], sums.squares[b], n));
-                           }
-                       }
-                       halves_y_[pixel] = static_cast<float>(luminance * luminance);
-                       image_.sample_count[pixel] = static_cast<float>(n);
-                       image_.variance_y[pixel] =
-                           static_cast<float>(luminance_variance(strip, at, n));
-                   });
+    for_each_pixel(
+        strip, layout_, static_cast<int>(bands),
+        [&](std::size_t at, const PixelSums& sums, std::size_t) {
+            const std::size_t pixel = strip.first_pixel + at;
+            const double n = accepted(strip, at, samples_);
+            double luminance = 0.0;
+            for (std::size_t b = 0; b < bands; ++b) {
+                const double d = n > 0.0 ? half_difference(sums, layout_, b, n, samples_) : 0.0;
+                luminance += y_weights_[b] * d;
+                image_.values[pixel * bands + b] =
+                    static_cast<float>(n > 0.0 ? sums.sum[b] / n : 0.0);
+                if (by_band) {
+                    halves_bands_[pixel * bands + b] = static_cast<float>(d * d);
+                    image_.variance_bands[pixel * bands + b] =
+                        static_cast<float>(variance_of_mean(sums.sum[b], sums.squares[b], n));
+                }
+            }
+            halves_y_[pixel] = static_cast<float>(luminance * luminance);
+            image_.sample_count[pixel] = static_cast<float>(n);
+            image_.variance_y[pixel] = static_cast<float>(luminance_variance(strip, at, n));
+        });
 }
 
 SpectralImage FilmResolver::take() {
@@ -285,7 +287,7 @@ RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int ban
         for_each_pixel(strip, layout, bands,
                        [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
                            const double n = accepted(strip, pixel, samples);
-                           parts[chunk].add(squared_error(sums, n, samples, floor) / bands);
+                           parts[chunk].add(squared_error(sums, layout, n, samples, floor) / bands);
                        });
     return estimate_from(parts);
 }

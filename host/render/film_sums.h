@@ -16,6 +16,7 @@ struct FilmLayout {
     bool scatter = false;
     bool band_variance = false;
     bool independent_samples = false;     ///< else halves say how much they vary (film_variance.h)
+    bool begins_odd = false;              ///< the first sample is of the odd half
     int lanes = 0;                        ///< padded columns of a row
     std::vector<std::int32_t> lane_bands; ///< [phase][padded lane]: column in scatter mode, or -1
     std::vector<float> lane_weights; ///< [phase][padded lane][2]: for its column, and for the next
