@@ -18,6 +18,7 @@ struct TeamReport {
     TeamTask done;
     double seconds = 0.0;
     bool interrupted = false; ///< somebody wants it all to end
+    bool leaves = false;      ///< takes no more tasks
 };
 
 /// Processes that do one job together, on one machine or many; rank 0 leads. Every member calls the
@@ -32,9 +33,11 @@ public:
     bool leads() const { return rank() == 0; }
 
     /// Calls `work` with tasks until `next` has none for this member. `next` is called at the
-    /// leader alone, for one report at a time, and not in the thread that works.
+    /// leader alone, for one report at a time, and not in the thread that works. A member that does
+    /// not take part is given none; the leader does.
     virtual void share_tasks(const std::function<TeamTask(const TeamReport&)>& next,
-                             const std::function<TeamReport(const TeamTask&)>& work) = 0;
+                             const std::function<TeamReport(const TeamTask&)>& work,
+                             bool takes_part = true) = 0;
     /// The leader's values become the sums of all members'.
     virtual void add_at_leader(std::span<double> values) = 0;
     /// The leader's value, for everybody.

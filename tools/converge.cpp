@@ -6,6 +6,7 @@
 #include "host/study/converge_store.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
+#include "tools/join_team.h"
 #include "tools/parse_options.h"
 
 #include <fmt/format.h>
@@ -39,13 +40,16 @@ void print_summary(const ConvergeResult& result, const std::filesystem::path& fo
 }
 
 int run_converge(ConvergeCommand command, const CommandContext& context) {
-    const CommonOptions& common = context.common;
+    CommonOptions common = context.common;
+    const std::unique_ptr<Team> team = join_team(common);
     ConvergeOptions& options = command.options;
     options.methods = parse_methods(command.methods);
     if (!command.bands.empty())
         options.render.bands = parse_bands_option(command.bands);
     options.render.seed = common.seed;
     options.render.threads = common.threads;
+    options.render.processes_on_machine = members_on_host(team);
+    options.team = team.get();
     options.folder = output_directory(options.folder);
     const Scene scene = load_scene(command.scene);
     prepare_opencl(common.threads);
@@ -59,6 +63,8 @@ int run_converge(ConvergeCommand command, const CommandContext& context) {
             return !interrupt_requested();
         });
     }
+    if (team && !team->leads())
+        return 0;
     if (!result.methods.empty()) {
         const auto json = converge_json(result, scene, device, options.time_seconds);
         write_curves_csv(options.folder / "curve.csv", result);
@@ -94,6 +100,14 @@ void add_converge_command(CLI::App& program, CommandContext& context) {
     app->add_option("--bands", command->bands, "film bands in nm, FROM:TO:STEP");
     app->add_option("--memory-limit", command->options.render.memory_limit_bytes,
                     "refuse a render that would take more bytes (default: 80 % of the machine's)");
+    app->add_option("--checkpoint", command->options.render.checkpoint_seconds,
+                    "keep the render in progress every so many seconds")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app->add_flag(
+        "--resume", command->options.resume,
+        "refuse what was kept of another scene, build or device; without it such a render "
+        "begins anew");
     app->footer("Example: reradiant converge scene.toml -o errors --methods adding,adding+comb:16 "
                 "--time 20");
     app->callback([command, &context] { context.exit_code = run_converge(*command, context); });

@@ -1,15 +1,17 @@
 #include "tools/interrupt.h"
 
+#include <atomic>
 #include <csignal>
 
 namespace reradiant {
 
 namespace {
 
-volatile std::sig_atomic_t requested = 0;
+std::atomic<bool> requested = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal's handler sets it");
 
 void note_interrupt(int signal) {
-    requested = 1;
+    requested = true;
     std::signal(signal, SIG_DFL);
 }
 
@@ -21,7 +23,11 @@ void catch_interrupts() {
 }
 
 bool interrupt_requested() {
-    return requested != 0;
+    return requested;
+}
+
+StopFlag interrupt_flag() {
+    return &requested;
 }
 
 } // namespace reradiant

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "host/interruption.h"
+
 namespace reradiant {
 
 constexpr int exit_interrupted = 130;
@@ -8,5 +10,7 @@ constexpr int exit_interrupted = 130;
 /// interrupt_requested() between its steps and keeps what it has. The second one does.
 void catch_interrupts();
 bool interrupt_requested();
+/// The same for work that watches a flag.
+StopFlag interrupt_flag();
 
 } // namespace reradiant

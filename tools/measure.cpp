@@ -3,6 +3,8 @@
 #include "host/paths.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
+#include "tools/interrupt.h"
+#include "tools/kept_work.h"
 #include "tools/parse_options.h"
 
 #include <fmt/format.h>
@@ -24,6 +26,8 @@ struct MeasureOptions {
     bool hemispherical = false;
     std::string model = "auto", bands;
     long samples = 0;
+    double checkpoint_seconds = 60.0;
+    bool resume = false;
 };
 
 std::filesystem::path material_file(const MeasureOptions& options) {
@@ -38,12 +42,72 @@ std::filesystem::path material_file(const MeasureOptions& options) {
     return spectra_directory() / "materials" / (options.preset + ".toml");
 }
 
+/// What a walk depends on. The material's numbers stand for the files that it names.
+SampleIdentity walk_identity(const std::filesystem::path& file, const Material& material,
+                             const MeasureRequest& request) {
+    const WavelengthGrid bands = measured_bands(material, request);
+    const SubstrateValues substrate = measured_substrate(material.substrate, bands);
+    std::string numbers = fmt::format("{}", fmt::join(substrate.matrix.reshaped(), " "));
+    for (const ConductorValues& conductor : substrate.conductor)
+        numbers += fmt::format(" {} {}", conductor.ior, conductor.kappa);
+    return {{"material", file_digest(file)},
+            {"stack", stack_digest(material.stack, bands)},
+            {"substrate", text_digest(numbers)},
+            {"bands", fmt::format("{}:{}:{}", bands.from_nm, bands.to_nm(), bands.step_nm)},
+            {"model", model_name(request.model)},
+            {"theta_i", fmt::format("{}", fmt::join(request.theta_i_deg, ","))},
+            {"theta_o", fmt::format("{}", fmt::join(request.theta_o_deg, ","))},
+            {"phi", fmt::format("{}", fmt::join(request.phi_deg, ","))},
+            {"kind", request.hemispherical ? "hemispherical" : "directional"},
+            {"samples", std::to_string(request.samples)},
+            {"seed", std::to_string(request.seed)}};
+}
+
+nlohmann::json states_json(const std::vector<WalkState>& states) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const WalkState& state : states)
+        list.push_back({state.blocks, state.walks, state.numbers});
+    return list;
+}
+
+std::vector<WalkState> states_from(const nlohmann::json& list) {
+    std::vector<WalkState> states;
+    for (const nlohmann::json& state : list)
+        states.push_back({state.at(0).get<std::uint64_t>(), state.at(1).get<std::uint64_t>(),
+                          state.at(2).get<std::vector<double>>()});
+    return states;
+}
+
+/// Measures with a checkpoint; nothing when it was interrupted, which it says.
+std::optional<Measurement> measure_and_keep(const MeasureOptions& options, const Material& material,
+                                            MeasureRequest request) {
+    KeptWork kept(options.output, walk_identity(material_file(options), material, request),
+                  options.checkpoint_seconds);
+    if (options.resume)
+        if (const auto state = kept.read())
+            request.walked = states_from(*state);
+    request.pause = [&](const std::function<std::vector<WalkState>()>& states) {
+        kept.keep_when_due([&] { return states_json(states()); });
+    };
+    request.stop = interrupt_flag();
+    catch_interrupts();
+    try {
+        Measurement measurement = measure_material(material, request);
+        kept.remove();
+        return measurement;
+    } catch (const Interrupted&) {
+        fmt::print(stderr, "{}\n", kept.interruption_text());
+        return std::nullopt;
+    }
+}
+
 /// Errors of meaning have no place of their own: they are placed at the material's file.
-Measurement measure_file(const MeasureOptions& options, const MeasureRequest& request) {
+std::optional<Measurement> measure_file(const MeasureOptions& options,
+                                        const MeasureRequest& request) {
     const std::filesystem::path file = material_file(options);
     const Material material = load_material(file);
     try {
-        return measure_material(material, request);
+        return measure_and_keep(options, material, request);
     } catch (const Error& error) {
         if (error.kind() == Error::Kind::Input && error.position().file.empty()) {
             throw_input_error({file.string()}, error.what());
@@ -71,7 +135,10 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
         threads.emplace(tbb::global_control::max_allowed_parallelism,
                         static_cast<std::size_t>(common.threads));
     }
-    const Measurement measurement = measure_file(options, request);
+    const std::optional<Measurement> measured = measure_file(options, request);
+    if (!measured)
+        return exit_interrupted;
+    const Measurement& measurement = *measured;
     write_measurement(options.output, measurement);
     write_json(common.json, {{"model", model_name(measurement.model)},
                              {"rows", measurement.rows.size()},
@@ -119,6 +186,12 @@ void add_measure_command(CLI::App& program, CommandContext& context) {
         ->add_option("--samples", options->samples,
                      "paths per theta-i (model walk only; default 65536), in blocks of 256")
         ->check(CLI::NonNegativeNumber);
+    command
+        ->add_option("--checkpoint", options->checkpoint_seconds,
+                     "write OUT.csv.checkpoint every so many seconds of walks")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_flag("--resume", options->resume, "go on from OUT.csv.checkpoint where it exists");
     command->footer("Example: reradiant measure lacquer.toml -o lacquer.csv --theta-i 45 "
                     "--theta-o 0,20,60 --phi 180");
     command->callback(

@@ -7,6 +7,7 @@
 #include "host/study/study_store.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
+#include "tools/join_team.h"
 #include "tools/parse_options.h"
 
 #include <fmt/format.h>
@@ -59,11 +60,14 @@ void write_results(const Study& study, const StudyResult& result,
 }
 
 int run(StudyCommand command, const CommandContext& context) {
-    const CommonOptions& common = context.common;
+    CommonOptions common = context.common;
+    const std::unique_ptr<Team> team = join_team(common);
     StudyOptions& options = command.options;
     options.folder = output_directory(options.folder);
     options.render.seed = common.seed;
     options.render.threads = common.threads;
+    options.render.processes_on_machine = members_on_host(team);
+    options.team = team.get();
     const Study study = load_study(command.study);
     std::optional<Device> device;
     if (study.rendering) {
@@ -80,6 +84,8 @@ int run(StudyCommand command, const CommandContext& context) {
                                return !interrupt_requested();
                            });
     }
+    if (team && !team->leads())
+        return 0;
     const std::size_t failed = failed_cells(result);
     if (!result.interrupted)
         write_results(study, result, options.folder);
@@ -104,6 +110,13 @@ void add_study_command(CLI::App& program, CommandContext& context) {
     app->add_option("-o,--output", command->options.folder, "folder to write to")->required();
     app->add_option("--memory-limit", command->options.render.memory_limit_bytes,
                     "refuse a render that would take more bytes (default: 80 % of the machine's)");
+    app->add_option("--checkpoint", command->options.render.checkpoint_seconds,
+                    "keep a cell's render every so many seconds")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app->add_flag("--resume", command->options.resume,
+                  "refuse what was kept of another scene, build or device; without it such a cell "
+                  "begins anew");
     app->footer("Example: reradiant study study.toml -o results");
     app->callback([command, &context] { context.exit_code = run(*command, context); });
 }

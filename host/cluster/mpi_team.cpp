@@ -72,7 +72,8 @@ void serve(const NextTask& next, int others, const std::stop_token& stop) {
         });
         if (waiting == 0)
             return;
-        const TeamTask task = next(receive_from<TeamReport>(status.MPI_SOURCE, report_tag));
+        const auto report = receive_from<TeamReport>(status.MPI_SOURCE, report_tag);
+        const TeamTask task = report.leaves ? TeamTask{} : next(report);
         send_to(status.MPI_SOURCE, task_tag, task);
         if (task.count == 0)
             --others;
@@ -103,15 +104,15 @@ public:
     int size_on_host() const override { return size_on_host_; }
     int rank_on_host() const override { return rank_on_host_; }
 
-    void share_tasks(const NextTask& next, const DoTask& work) override {
+    void share_tasks(const NextTask& next, const DoTask& work, bool takes_part) override {
         if (!leads()) {
-            work_through(
-                [](const TeamReport& report) {
-                    send_to(0, report_tag, report);
-                    await(0, task_tag);
-                    return receive_from<TeamTask>(0, task_tag);
-                },
-                work);
+            const NextTask ask_leader = [&](TeamReport report) {
+                report.leaves = !takes_part;
+                send_to(0, report_tag, report);
+                await(0, task_tag);
+                return receive_from<TeamTask>(0, task_tag);
+            };
+            work_through(ask_leader, work);
             return;
         }
         std::mutex mutex;

@@ -124,7 +124,9 @@ void add_notes(Measurement& measurement, const SurfaceModel& surface,
     }
 }
 
-WavelengthGrid bands_of(const Material& material, const MeasureRequest& request) {
+} // namespace
+
+WavelengthGrid measured_bands(const Material& material, const MeasureRequest& request) {
     if (request.bands) {
         return *request.bands;
     }
@@ -138,8 +140,6 @@ WavelengthGrid bands_of(const Material& material, const MeasureRequest& request)
     }
     return grid_from_range(material.substrate.is_fluorescent() ? 300.0 : 380.0, 780.0, 10.0);
 }
-
-} // namespace
 
 Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request) {
@@ -198,7 +198,7 @@ Measurement measure_material(const Material& material, const MeasureRequest& req
     const ModelChoice choice = choose_model(material, request.model, ModelUse::Measure);
     resolved.model = choice.model;
     check_request(resolved);
-    const WavelengthGrid bands = bands_of(material, request);
+    const WavelengthGrid bands = measured_bands(material, request);
     Measurement measurement = measure_substrate(
         material.stack, measured_substrate(material.substrate, bands), bands, resolved);
     if (!choice.reason.empty()) {

@@ -1,12 +1,14 @@
 #pragma once
 
 #include "host/interruption.h"
+#include "host/layers/walk_estimate.h"
 #include "host/measure/surface_model.h"
 #include "host/scene/scene.h"
 
 #include <Eigen/Core>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +27,10 @@ struct MeasureRequest {
     long samples = 0;        ///< of the walk: paths for each theta_i, 0: default_walk_samples
     unsigned seed = 0;       ///< of the walk
     StopFlag stop = nullptr; ///< asked between two walks, and between two pairs of directions
+    /// Of the walk: what an earlier call with the same request told of every theta_i that it began,
+    /// and who is told, between walks, how to get that.
+    std::vector<WalkState> walked = {};
+    std::function<void(const std::function<std::vector<WalkState>()>& states)> pause = {};
 };
 
 enum class MeasuredPart { Diffuse, Specular };
@@ -51,6 +57,9 @@ struct Measurement {
 /// 10 nm steps when it fluoresces, else 380-780 nm. Input Error for angles out of range and for a
 /// matrix whose two grids make no common one.
 Measurement measure_material(const Material& material, const MeasureRequest& request);
+
+/// The bands that a material is measured on.
+WavelengthGrid measured_bands(const Material& material, const MeasureRequest& request);
 
 /// The same for a stack over a substrate given by its per-band matrix, (bands, bands), rows =
 /// emission. `request.bands` is not used.

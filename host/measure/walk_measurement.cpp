@@ -59,6 +59,35 @@ void add_rows(Measurement& measurement, const Eigen::MatrixXd& matrix, const Mea
     }
 }
 
+/// What there is of every theta_i, in order, for a request that wants to hear of it.
+class WalkJournal {
+public:
+    explicit WalkJournal(const MeasureRequest& request) : request_(request) {}
+
+    WalkEstimate estimate(const LayerWalk& walk, const kernels::Vec3& wi,
+                          std::span<const kernels::Vec3> wo, long samples) {
+        const std::size_t index = told_.size();
+        const bool begun = index < request_.walked.size();
+        told_.push_back(begun ? request_.walked[index] : WalkState{});
+        const WalkState from = told_.back();
+        const WalkPause pause = [&](bool is_done, const std::function<WalkState()>& state) {
+            if (is_done) {
+                told_.back() = state();
+            }
+            request_.pause([&] {
+                told_.back() = state();
+                return told_;
+            });
+        };
+        return estimate_walk(walk, wi, wo, static_cast<std::uint64_t>(samples), request_.seed,
+                             request_.stop, from, request_.pause ? pause : WalkPause{});
+    }
+
+private:
+    const MeasureRequest& request_;
+    std::vector<WalkState> told_;
+};
+
 void add_notes(Measurement& measurement, const LayerWalk& walk, long samples, unsigned seed,
                double delta, double lost) {
     const auto add = [&](const std::string& note) { measurement.notes.push_back(note); };
@@ -96,10 +125,10 @@ Measurement measure_by_walk(const LayerStack& stack, const SubstrateValues& subs
     }
     const long samples = request.samples > 0 ? request.samples : default_walk_samples;
     double delta = 0.0, lost = 0.0;
+    WalkJournal journal(request);
     for (const double theta_i : request.theta_i_deg) {
         const WalkEstimate estimate =
-            estimate_walk(walk, direction_at(std::cos(radians(theta_i)), 0.0), wo,
-                          static_cast<std::uint64_t>(samples), request.seed, request.stop);
+            journal.estimate(walk, direction_at(std::cos(radians(theta_i)), 0.0), wo, samples);
         const WalkTally &mean = estimate.mean, &error = estimate.standard_error;
         MeasureRow angles{theta_i, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
         if (request.hemispherical) {

@@ -1,6 +1,9 @@
 #include "host/render/checkpoint_file.h"
 
+#include "host/error.h"
 #include "host/render/render_identity.h"
+
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
@@ -26,8 +29,15 @@ RenderProgress CheckpointFile::resume(Wavefront& wavefront, RenderResult& result
     if (options_.checkpoint.empty() || !options_.resume ||
         !std::filesystem::exists(options_.checkpoint, ignored))
         return {};
-    const RenderCheckpoint kept =
-        read_checkpoint(options_.checkpoint, head_.identity, wavefront.film().float_count());
+    RenderCheckpoint kept;
+    try {
+        kept = read_checkpoint(options_.checkpoint, head_.identity, wavefront.film().float_count());
+    } catch (const Error& error) {
+        if (!options_.restart_if_other)
+            throw;
+        spdlog::warn("{}; this render begins anew", error.what());
+        return {};
+    }
     wavefront.film().restore(kept.sums, kept.statistics);
     result.passes = kept.passes;
     result.paths = kept.paths;

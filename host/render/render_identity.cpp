@@ -23,7 +23,13 @@ std::string whole_file(const fs::path& file) {
     return text.str();
 }
 
-/// Digest of the running program and of the kernels' sources. Computed once.
+std::string bands_text(const std::optional<WavelengthGrid>& bands) {
+    return bands ? fmt::format("{}:{}:{}", bands->from_nm, bands->to_nm(), bands->step_nm)
+                 : "the scene's";
+}
+
+} // namespace
+
 const std::string& build_digest() {
     static const std::string digest = [] {
         Sha256 sha;
@@ -38,13 +44,6 @@ const std::string& build_digest() {
     }();
     return digest;
 }
-
-std::string bands_text(const std::optional<WavelengthGrid>& bands) {
-    return bands ? fmt::format("{}:{}:{}", bands->from_nm, bands->to_nm(), bands->step_nm)
-                 : "the scene's";
-}
-
-} // namespace
 
 SampleIdentity sampling_identity(const Scene& scene, const RenderOptions& options) {
     return {{"scene", scene.hash},

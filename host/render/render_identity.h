@@ -19,6 +19,9 @@ SampleIdentity sampling_identity(const Scene& scene, const RenderOptions& option
 SampleIdentity render_identity(const Scene& scene, const Device& device,
                                const RenderOptions& options);
 
+/// Digest of the running program and of the kernels' sources.
+const std::string& build_digest();
+
 /// One digest of all facts, 64 hex digits.
 std::string identity_digest(const SampleIdentity& identity);
 

@@ -38,6 +38,7 @@ struct RenderOptions {
     std::filesystem::path checkpoint;     ///< empty: none is written or read
     double checkpoint_seconds = 60.0;     ///< at most so long between two of them
     bool resume = false;                  ///< go on from `checkpoint` where it exists
+    bool restart_if_other = false; ///< ... and fits; else warn and begin anew, instead of refusing
     RaySink on_rays = {};
 };
 

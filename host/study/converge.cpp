@@ -1,15 +1,16 @@
 #include "host/study/converge.h"
 
 #include "host/error.h"
-#include "host/render/scene_tables.h"
+#include "host/render/team_render.h"
 #include "host/scene/sha256.h"
+#include "host/study/converge_checks.h"
 #include "host/study/converge_store.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace reradiant {
@@ -31,47 +32,6 @@ RenderOptions method_options(const ConvergeOptions& options, const RenderMethod&
     render.time_seconds = options.time_seconds;
     render.seed = seed;
     return render;
-}
-
-/// Refuses a model that some material cannot be rendered by. The coarsest comb does for that.
-void check_methods(const Scene& scene, const ConvergeOptions& options) {
-    WavelengthPlan plan =
-        plan_wavelengths(scene, options.render.bands.value_or(film_bands(scene)), {1});
-    for (const RenderMethod& method : options.methods) {
-        plan.hero = method.hero_count;
-        try {
-            build_scene_tables(scene, plan, method.model);
-        } catch (const Error& error) {
-            throw_input_error({scene.file.string()},
-                              fmt::format("cannot be rendered by the method '{}': {}", method.name,
-                                          error.what()));
-        }
-    }
-}
-
-void check_reference(const Reference& reference, const Scene& scene, const WavelengthGrid& bands) {
-    const SpectralImage& image = reference.image;
-    const SourcePosition at{reference.file.string()};
-    if (image.width != scene.film.width || image.height != scene.film.height)
-        throw_input_error(at,
-                          fmt::format("the reference has {} x {} pixels, the scene's film {} x {}",
-                                      image.width, image.height, scene.film.width,
-                                      scene.film.height),
-                          "render the reference from the same scene");
-    const bool alike = image.bands.count == bands.count &&
-                       std::abs(image.bands.from_nm - bands.from_nm) <= 1e-5 &&
-                       std::abs(image.bands.step_nm - bands.step_nm) <= 1e-5;
-    if (!alike)
-        throw_input_error(
-            at,
-            fmt::format("the reference has the bands {}:{}:{} nm, the scene {}:{}:{} nm",
-                        image.bands.from_nm, image.bands.to_nm(), image.bands.step_nm,
-                        bands.from_nm, bands.to_nm(), bands.step_nm),
-            "render the reference with the same bands");
-    if (!std::all_of(image.values.begin(), image.values.end(),
-                     [](float value) { return std::isfinite(value); }))
-        throw_input_error(at, "the reference holds values that are not finite",
-                          "no error can be stated against it");
 }
 
 std::string sha256_of(const std::string& text) {
@@ -105,8 +65,11 @@ public:
             make_reference();
         else
             read_reference();
-        for (std::size_t k = 0; k < options_.methods.size() && !result_.interrupted; ++k)
-            add_method(k);
+        if (options_.team != nullptr && !result_.interrupted)
+            share_methods(*options_.team);
+        else
+            for (std::size_t k = 0; k < options_.methods.size() && !result_.interrupted; ++k)
+                add_method(k);
         return std::move(result_);
     }
 
@@ -146,11 +109,21 @@ private:
             result_.reference = std::move(*kept);
             return;
         }
+        keep_as(render, options_.folder / "reference.exr");
         const double share = share_of_reference(options_);
-        RenderResult rendered = render_until(render, 0.0, share, "reference",
-                                             [](const RenderProgress&, const auto&) {});
+        RenderResult rendered = render_until(render, 0.0, share, "reference", {}, options_.team);
+        if (options_.team != nullptr)
+            result_.interrupted = options_.team->from_leader(rendered.interrupted) != 0;
         if (result_.interrupted)
             return;
+        if (rendered.image.values.empty()) { // of a member: the leader has it
+            await_leader();
+            auto kept = kept_reference(options_.folder, identity);
+            if (!kept)
+                refuse_folder("the reference");
+            result_.reference = std::move(*kept);
+            return;
+        }
         const RenderProgress& last = rendered.passes.back();
         result_.reference = {std::move(rendered.image),
                              {},
@@ -158,11 +131,33 @@ private:
                              {last.relmse, last.relmse_low, last.relmse_high}};
         result_.reference.image.attributes["reradiant:seed"] = std::to_string(render.seed);
         keep_reference(options_.folder, result_.reference);
+        await_leader();
+    }
+
+    [[noreturn]] void refuse_folder(const std::string& missing) const {
+        throw_runtime_error(
+            fmt::format("{}: {} of another member is not there", options_.folder.string(), missing),
+            "give all machines the same folder");
+    }
+
+    /// Nobody goes on before the leader is here.
+    void await_leader() const {
+        if (options_.team != nullptr)
+            options_.team->from_leader(0);
+    }
+
+    /// Lets a render keep what it has beside the image that it is to become.
+    void keep_as(RenderOptions& render, const std::filesystem::path& image) const {
+        std::filesystem::create_directories(image.parent_path());
+        render.checkpoint = image.string() + ".checkpoint";
+        render.resume = true;
+        render.restart_if_other = !options_.resume;
     }
 
     /// Renders with progress from `share` on; sets `interrupted` when it was stopped.
     RenderResult render_until(const RenderOptions& render, double share, double share_of_all,
-                              const std::string& name, const RenderObserver& observe) {
+                              const std::string& name, const RenderObserver& observe,
+                              Team* team = nullptr) {
         const auto progress = [&](const RenderProgress& state) {
             const double done = std::max(state.seconds / render.time_seconds,
                                          static_cast<double>(state.samples) / render.samples);
@@ -172,48 +167,105 @@ private:
             result_.interrupted = !goes_on;
             return goes_on;
         };
-        return reradiant::render(scene_, device_, render, progress, observe);
+        return team != nullptr ? render_together(scene_, device_, render, *team, progress, observe)
+                               : reradiant::render(scene_, device_, render, progress, observe);
+    }
+
+    /// Methods are measured by members and kept in the folder, where the leader reads them.
+    void share_methods(Team& team) {
+        const std::size_t count = options_.methods.size();
+        std::size_t next = 0;
+        bool interrupted = false;
+        team.share_tasks(
+            [&](const TeamReport& report) -> TeamTask {
+                interrupted |= report.interrupted;
+                return interrupted || next == count ? TeamTask{} : TeamTask{next++, 1};
+            },
+            [&](const TeamTask& task) -> TeamReport {
+                add_method(task.first);
+                return {task, 0.0, result_.interrupted};
+            },
+            team.rank_on_host() == 0);
+        result_.interrupted = team.from_leader(interrupted) != 0;
+        std::string measured_now(count, '-');
+        for (const MethodResult& method : result_.methods)
+            for (std::size_t k = 0; k < count; ++k)
+                if (!method.resumed && method.curve.method.name == options_.methods[k].name)
+                    measured_now[k] = '+';
+        const std::vector<std::string> told = team.gather(measured_now);
+        if (team.leads())
+            collect_methods(told);
+    }
+
+    void collect_methods(const std::vector<std::string>& measured_now) {
+        result_.methods.clear();
+        for (std::size_t k = 0; k < options_.methods.size(); ++k) {
+            if (take_kept(k))
+                result_.methods.back().resumed =
+                    std::none_of(measured_now.begin(), measured_now.end(),
+                                 [&](const std::string& one) { return one[k] == '+'; });
+            else if (!result_.interrupted)
+                refuse_folder("the method " + options_.methods[k].name);
+        }
+    }
+
+    std::string method_identity(std::size_t index) const {
+        return sha256_of(fmt::format("{} {} {} {} {}", common_identity(scene_, device_, options_),
+                                     result_.reference.identity, result_.seed,
+                                     options_.time_seconds, options_.methods[index].name));
+    }
+
+    bool take_kept(std::size_t index) {
+        auto kept = kept_method(options_.folder, method_identity(index), options_.methods[index]);
+        if (kept)
+            result_.methods.push_back(std::move(*kept));
+        return kept.has_value();
     }
 
     void add_method(std::size_t index) {
-        const RenderMethod& method = options_.methods[index];
-        const std::string identity = sha256_of(fmt::format(
-            "{} {} {} {} {}", common_identity(scene_, device_, options_),
-            result_.reference.identity, result_.seed, options_.time_seconds, method.name));
-        if (auto kept = kept_method(options_.folder, identity, method)) {
-            result_.methods.push_back(std::move(*kept));
+        if (take_kept(index))
             return;
-        }
         const double all = options_.reference.empty() ? 1.0 - share_of_reference(options_) : 1.0;
         const double share = all / static_cast<double>(options_.methods.size());
         MethodResult result =
-            measured(method, 1.0 - all + share * static_cast<double>(index), share);
+            measured(index, 1.0 - all + share * static_cast<double>(index), share);
         if (result_.interrupted)
             return;
-        keep_method(options_.folder, identity, result);
+        keep_method(options_.folder, method_identity(index), result);
         result_.methods.push_back(std::move(result));
     }
 
-    MethodResult measured(const RenderMethod& method, double share, double share_of_all) {
+    MethodResult measured(std::size_t index, double share, double share_of_all) {
+        const RenderMethod& method = options_.methods[index];
         MethodResult result;
         result.curve.method = method;
-        double next_seconds = 0.0;
+        std::vector<CurveRow>& rows = result.curve.rows;
+        std::vector<CurveRow> earlier = kept_rows(options_.folder, method_identity(index), method);
+        bool begun = false;
         const auto observe = [&](const RenderProgress& state, const auto& image) {
+            if (!begun) // those before the checkpoint that the render goes on from
+                std::copy_if(earlier.begin(), earlier.end(), std::back_inserter(rows),
+                             [&](const CurveRow& row) {
+                                 return row.seconds < state.seconds && row.samples < state.samples;
+                             });
+            begun = true;
+            const double next_seconds = rows.empty() ? 0.0 : time_ratio * rows.back().seconds;
             if (state.seconds < std::min(next_seconds, options_.time_seconds))
                 return;
-            next_seconds = time_ratio * state.seconds;
-            result.curve.rows.push_back({state.seconds,
-                                         0.0,
-                                         state.samples,
-                                         compare_images(image(), result_.reference.image),
-                                         {state.relmse, state.relmse_low, state.relmse_high}});
+            rows.push_back({state.seconds,
+                            0.0,
+                            state.samples,
+                            compare_images(image(), result_.reference.image),
+                            {state.relmse, state.relmse_low, state.relmse_high}});
+            keep_rows(options_.folder, method_identity(index), result.curve);
         };
-        const RenderOptions render = method_options(options_, method, result_.seed);
+        RenderOptions render = method_options(options_, method, result_.seed);
         const double setup_and_pass = warm_up(render, result.curve);
+        keep_as(render, method_image(options_.folder, method));
         RenderResult rendered = render_until(render, share, share_of_all, method.name, observe);
         result.curve.setup_seconds =
             std::max(0.0, setup_and_pass - rendered.passes.front().seconds);
-        for (CurveRow& row : result.curve.rows)
+        for (CurveRow& row : rows)
             row.seconds_with_setup = row.seconds + result.curve.setup_seconds;
         result.image = std::move(rendered.image);
         return result;

@@ -4,6 +4,7 @@
 #include "host/render/renderer.h"
 #include "host/scene/scene.h"
 #include "host/study/error_curve.h"
+#include "host/team.h"
 
 #include <filesystem>
 #include <functional>
@@ -18,7 +19,11 @@ struct ConvergeOptions {
     std::filesystem::path reference;     ///< empty: it is rendered, with other random numbers
     std::uint32_t reference_samples = 0; ///< 0: for ten times the time of a method
     double time_seconds = 10.0;          ///< of rendering, each method
-    RenderOptions render;                ///< seed, threads, bands and memory limit are used
+    RenderOptions render; ///< seed, threads, bands, memory and seconds between checkpoints are used
+    bool resume = false;  ///< refuse a checkpoint that is of another render; else begin it anew
+    /// Renders the reference together; methods are timed one at a time on every machine, by its
+    /// first member while the others rest. Members share the folder.
+    Team* team = nullptr;
 };
 
 /// What errors are measured against.
@@ -47,8 +52,9 @@ using StudyProgress = std::function<bool(double share, const std::string& note)>
 
 /// Renders a scene by every method, and compares with the reference at geometric steps of time.
 /// Finished methods are kept in `folder` and not rendered again there by a run with the same
-/// scene, seed, reference and time. Input Error for a method that the scene cannot be rendered by,
-/// and for a reference of another size or other bands, before anything is rendered.
+/// scene, seed, reference and time; one that was interrupted goes on from its checkpoint. Input
+/// Error for a method that the scene cannot be rendered by, and for a reference of another size or
+/// other bands, before anything is rendered.
 ConvergeResult converge(const Scene& scene, const Device& device, const ConvergeOptions& options,
                         const StudyProgress& progress);
 

@@ -106,10 +106,38 @@ Json curve_json(const ErrorCurve& curve) {
 
 void keep_method(const fs::path& folder, const std::string& identity, const MethodResult& result) {
     fs::create_directories(folder / "methods");
-    write_spectral_exr(method_file(folder, result.curve.method, ".exr"), result.image);
+    write_spectral_exr(method_image(folder, result.curve.method), result.image);
     Json json = {{"identity", identity}};
     json.update(curve_json(result.curve));
     write_json(method_file(folder, result.curve.method, ".json"), json); // last: it says "done"
+    std::error_code ignored;
+    fs::remove(method_file(folder, result.curve.method, ".rows.json"), ignored);
+}
+
+fs::path method_image(const fs::path& folder, const RenderMethod& method) {
+    return method_file(folder, method, ".exr");
+}
+
+void keep_rows(const fs::path& folder, const std::string& identity, const ErrorCurve& curve) {
+    Json json = {{"identity", identity}};
+    json.update(curve_json(curve));
+    fs::create_directories(folder / "methods");
+    write_json(method_file(folder, curve.method, ".rows.json"), json);
+}
+
+std::vector<CurveRow> kept_rows(const fs::path& folder, const std::string& identity,
+                                const RenderMethod& method) {
+    std::ifstream stream(method_file(folder, method, ".rows.json"));
+    const Json json = Json::parse(stream, nullptr, false);
+    std::vector<CurveRow> rows;
+    try {
+        if (json.is_object() && json.at("identity") == identity)
+            for (const Json& row : json.at("rows"))
+                rows.push_back(row_from_json(row));
+    } catch (const Json::exception&) {
+        return {};
+    }
+    return rows;
 }
 
 std::optional<MethodResult> kept_method(const fs::path& folder, const std::string& identity,
@@ -126,7 +154,7 @@ std::optional<MethodResult> kept_method(const fs::path& folder, const std::strin
         result.curve.build_seconds = json.at("build_seconds").get<double>();
         for (const Json& row : json.at("rows"))
             result.curve.rows.push_back(row_from_json(row));
-        result.image = read_spectral_exr(method_file(folder, method, ".exr"));
+        result.image = read_spectral_exr(method_image(folder, method));
         return result;
     } catch (const Json::exception&) {
         return std::nullopt;

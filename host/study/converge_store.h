@@ -22,6 +22,16 @@ void keep_method(const std::filesystem::path& folder, const std::string& identit
 std::optional<MethodResult> kept_method(const std::filesystem::path& folder,
                                         const std::string& identity, const RenderMethod& method);
 
+/// Where its image lies.
+std::filesystem::path method_image(const std::filesystem::path& folder, const RenderMethod& method);
+
+/// Keeps the rows of a method that is not finished as methods/NAME.rows.json; keep_method removes
+/// them. kept_rows: none when there are none or they are of another identity.
+void keep_rows(const std::filesystem::path& folder, const std::string& identity,
+               const ErrorCurve& curve);
+std::vector<CurveRow> kept_rows(const std::filesystem::path& folder, const std::string& identity,
+                                const RenderMethod& method);
+
 /// Keeps the reference that was rendered as reference.exr beneath `folder`.
 void keep_reference(const std::filesystem::path& folder, Reference& reference);
 /// The same reference of an earlier run, if it is there and whole.

@@ -1,5 +1,6 @@
 #include "host/study/study.h"
 
+#include "host/error.h"
 #include "host/scene/sha256.h"
 #include "host/spectral/colour.h"
 #include "host/study/study_store.h"
@@ -63,16 +64,11 @@ public:
         : study_(study), device_(device), options_(options), progress_(progress) {}
 
     StudyResult result() {
+        if (options_.team != nullptr)
+            return result_of_team(*options_.team);
         const std::size_t count = study_.cell_count();
         for (std::size_t index = 0; index < count && !result_.interrupted; ++index) {
-            CellResult cell = blank_cell(index);
-            try {
-                do_cell(cell);
-            } catch (const std::exception& error) {
-                cell.error = error.what();
-                spdlog::error("cell {} ({}) failed: {}", index, cell_name(study_, cell),
-                              cell.error);
-            }
+            CellResult cell = attempted(index);
             if (!result_.interrupted)
                 result_.cells.push_back(std::move(cell));
         }
@@ -88,6 +84,68 @@ private:
         for (std::size_t k = 0; k < indices.size(); ++k)
             cell.labels.push_back(study_.sweeps[k].values[indices[k]].label);
         return cell;
+    }
+
+    /// The cell as far as it came: done, failed or interrupted.
+    CellResult attempted(std::size_t index) {
+        CellResult cell = blank_cell(index);
+        try {
+            do_cell(cell);
+        } catch (const std::exception& error) {
+            if (options_.resume && is_about_checkpoint(error, cell))
+                throw;
+            cell.error = error.what();
+            spdlog::error("cell {} ({}) failed: {}", index, cell_name(study_, cell), cell.error);
+        }
+        return cell;
+    }
+
+    static bool is_about_checkpoint(const std::exception& error, const CellResult& cell) {
+        const auto* const placed = dynamic_cast<const Error*>(&error);
+        return placed != nullptr && placed->kind() == Error::Kind::Input &&
+               placed->position().file == cell_checkpoint(cell).string();
+    }
+    static std::filesystem::path cell_checkpoint(const CellResult& cell) {
+        return cell.folder / "image.exr.checkpoint";
+    }
+
+    /// Cells that members did are told to the leader, who reads them from the folder.
+    StudyResult result_of_team(Team& team) {
+        const std::size_t count = study_.cell_count();
+        std::size_t next = 0;
+        bool interrupted = false;
+        std::vector<CellResult> mine;
+        team.share_tasks(
+            [&](const TeamReport& report) -> TeamTask {
+                interrupted |= report.interrupted;
+                return interrupted || next == count ? TeamTask{} : TeamTask{next++, 1};
+            },
+            [&](const TeamTask& task) -> TeamReport {
+                CellResult cell = attempted(task.first);
+                if (!result_.interrupted)
+                    mine.push_back(std::move(cell));
+                return {task, 0.0, result_.interrupted};
+            });
+        result_.interrupted = team.from_leader(interrupted) != 0;
+        for (const std::string& told : team.gather(cells_text(mine)))
+            for (CellResult& cell : cells_from(told))
+                result_.cells.push_back(std::move(cell));
+        std::sort(result_.cells.begin(), result_.cells.end(),
+                  [](const CellResult& a, const CellResult& b) { return a.index < b.index; });
+        return std::move(result_);
+    }
+
+    std::vector<CellResult> cells_from(const std::string& told) const {
+        std::vector<CellResult> cells;
+        for (const ToldCell& one : told_cells(told)) {
+            CellResult cell = blank_cell(one.index);
+            cell.error = one.error;
+            if (!cell.failed() && !restore_cell(cell, one.identity))
+                cell.error = "its files are not here; all machines must share the folder";
+            cell.kept = one.kept && !cell.failed();
+            cells.push_back(std::move(cell));
+        }
+        return cells;
     }
 
     std::vector<ChosenValue> chosen_values(std::size_t index) const {
@@ -107,6 +165,7 @@ private:
         const std::string identity =
             identity_of(study_, values, scene, device_ != nullptr ? device_->info().name : "",
                         options_.render.seed);
+        cell.identity = identity;
         if (restore_cell(cell, identity)) {
             result_.interrupted = !report(cell, 0.0, "kept");
             return;
@@ -127,6 +186,10 @@ private:
         render.model = study_.rendering->method.model;
         render.wavelengths.comb_count = study_.rendering->method.comb_count;
         render.wavelengths.hero_count = study_.rendering->method.hero_count;
+        render.checkpoint = cell_checkpoint(cell);
+        render.resume = true;
+        render.restart_if_other = !options_.resume;
+        std::filesystem::create_directories(cell.folder);
         RenderResult rendered =
             reradiant::render(scene, *device_, render, [&](const RenderProgress& state) {
                 const double share = static_cast<double>(state.samples) / render.samples;

@@ -4,6 +4,7 @@
 #include "host/study/cell_measurement.h"
 #include "host/study/converge.h"
 #include "host/study/study_file.h"
+#include "host/team.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -15,7 +16,10 @@ namespace reradiant {
 
 struct StudyOptions {
     std::filesystem::path folder; ///< for results, and for what an interrupted run goes on from
-    RenderOptions render;         ///< seed, threads and memory limit are used
+    RenderOptions render; ///< seed, threads, memory and seconds between checkpoints are used
+    bool resume = false;  ///< refuse the checkpoint of a cell that is of another render; else the
+                          ///< cell begins anew
+    Team* team = nullptr; ///< cells are handed out to its members, who share the folder
 };
 
 /// One combination of the swept values. What was rendered lies in its folder as image.exr and
@@ -29,6 +33,7 @@ struct CellResult {
     bool has_image = false;
     double relmse = 0.0; ///< estimated, of the image
     std::optional<CellMeasurement> measurement;
+    std::string identity; ///< digest of what its results depend on
 
     bool failed() const { return !error.empty(); }
 };
@@ -40,7 +45,9 @@ struct StudyResult {
 
 /// Renders and measures every cell of a study into cells/NNNN beneath the folder. A cell that fails
 /// is reported and the rest goes on; cells of an earlier run with the same scene, settings and seed
-/// are not done again. `device` may be null when nothing is rendered.
+/// are not done again, and one that was interrupted goes on from its render's checkpoint. With a
+/// team every member calls this, and the leader has all cells. `device` may be null when nothing is
+/// rendered.
 StudyResult run_study(const Study& study, const Device* device, const StudyOptions& options,
                       const StudyProgress& progress);
 

@@ -227,6 +227,21 @@ bool restore_cell(CellResult& cell, const std::string& identity) {
     return true;
 }
 
+std::string cells_text(const std::vector<CellResult>& cells) {
+    Json list = Json::array();
+    for (const CellResult& cell : cells)
+        list.push_back({cell.index, cell.identity, cell.error, cell.kept});
+    return list.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::vector<ToldCell> told_cells(const std::string& text) {
+    std::vector<ToldCell> cells;
+    for (const Json& cell : Json::parse(text))
+        cells.push_back({cell.at(0).get<std::size_t>(), cell.at(1).get<std::string>(),
+                         cell.at(2).get<std::string>(), cell.at(3).get<bool>()});
+    return cells;
+}
+
 std::string matrix_svg(const CellMeasurement& measurement) {
     const std::vector<double> nm = measurement.bands.centres_nm();
     return svg::heat_map({"Re-radiation, square root", "excitation, nm", "emission, nm", nm, nm,

@@ -17,6 +17,15 @@ void keep_cell(const CellResult& cell, const std::string& identity);
 /// when its files are damaged.
 bool restore_cell(CellResult& cell, const std::string& identity);
 
+/// What a member of a team tells the leader of a cell; its results lie in the folder.
+struct ToldCell {
+    std::size_t index = 0;
+    std::string identity, error;
+    bool kept = false;
+};
+std::string cells_text(const std::vector<CellResult>& cells);
+std::vector<ToldCell> told_cells(const std::string& text);
+
 nlohmann::ordered_json measurement_json(const CellMeasurement& measurement);
 
 /// The plots of a cell as SVG, for files and pages.

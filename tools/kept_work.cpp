@@ -1,0 +1,132 @@
+#include "tools/kept_work.h"
+
+#include "host/atomic_file.h"
+#include "host/error.h"
+#include "host/render/render_identity.h"
+#include "host/scene/sha256.h"
+#include "tools/interrupt.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace reradiant {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr const char* format_name = "reradiant work checkpoint 1\n";
+constexpr std::size_t digest_characters = 64;
+
+std::string whole_file(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string conductor_text(const ConductorValues& values) {
+    return fmt::format("{} {} {} {} {} {} {}", values.ior, values.kappa,
+                       static_cast<int>(values.distribution), values.alpha,
+                       static_cast<int>(values.scattering), values.film.thickness_nm,
+                       values.film.ior);
+}
+
+} // namespace
+
+KeptWork::KeptWork(const fs::path& output, SampleIdentity identity, double seconds)
+    : identity_(std::move(identity)), seconds_(seconds) {
+    identity_.push_back({"build", build_digest()});
+    std::error_code ignored;
+    if (!fs::exists(output, ignored) || fs::is_regular_file(output, ignored))
+        file_ = output.string() + ".checkpoint";
+}
+
+std::optional<Json> KeptWork::read() const {
+    std::error_code ignored;
+    if (file_.empty() || !fs::exists(file_, ignored))
+        return std::nullopt;
+    const std::string bytes = whole_file(file_);
+    const std::string name = format_name;
+    const auto refuse = [&](const std::string& why) {
+        throw_input_error({file_.string()}, "is no whole checkpoint: " + why,
+                          "remove it and begin anew");
+    };
+    if (!bytes.starts_with(name) || bytes.size() < name.size() + digest_characters)
+        refuse("it does not begin like one of this version, or is cut off");
+    const std::string body = bytes.substr(0, bytes.size() - digest_characters);
+    if (text_digest(body) != bytes.substr(body.size()))
+        refuse("its checksum is wrong");
+    const Json json = Json::from_cbor(body.substr(name.size()), true, false);
+    if (!json.is_object() || !json.contains("identity") || !json.contains("state"))
+        refuse("it holds something else");
+    if (const auto difference =
+            identity_difference(identity_, json.at("identity").get<SampleIdentity>()))
+        throw_input_error({file_.string()}, "the checkpoint is of other work: " + *difference,
+                          "go on with what it was made with, or leave --resume away");
+    return json.at("state");
+}
+
+void KeptWork::write(const Json& state) const {
+    const std::vector<std::uint8_t> cbor =
+        Json::to_cbor({{"identity", identity_}, {"state", state}});
+    const std::string body = format_name + std::string(cbor.begin(), cbor.end());
+    write_text_atomically(file_, body + text_digest(body));
+}
+
+void KeptWork::keep_when_due(const std::function<Json()>& state) {
+    if (file_.empty() || (!interrupt_requested() &&
+                          seconds_since(written_) < std::max(seconds_, 10.0 * write_seconds_)))
+        return;
+    const Clock::time_point start = Clock::now();
+    write(state());
+    written_ = Clock::now();
+    write_seconds_ = seconds_since(start);
+}
+
+void KeptWork::remove() const {
+    std::error_code ignored;
+    if (!file_.empty())
+        fs::remove(file_, ignored);
+}
+
+std::string KeptWork::interruption_text() const {
+    std::error_code ignored;
+    return fs::exists(file_, ignored)
+               ? fmt::format("interrupted; {} holds what was done, --resume goes on",
+                             file_.string())
+               : "interrupted; nothing was written";
+}
+
+std::string text_digest(const std::string& text) {
+    Sha256 sha;
+    sha.update(text);
+    return sha.hex();
+}
+
+std::string file_digest(const fs::path& file) {
+    return text_digest(whole_file(file));
+}
+
+std::string stack_digest(const LayerStack& stack, const WavelengthGrid& bands) {
+    std::string text;
+    for (const double nm : bands.centres_nm())
+        for (const LayerValues& layer : stack_at(stack, nm))
+            text += fmt::format("{} {} {} {} {} {} {} {} {} {} {}\n", layer.ior,
+                                static_cast<int>(layer.distribution), layer.alpha,
+                                static_cast<int>(layer.scattering), layer.tau, layer.tau_scattering,
+                                layer.anisotropy, layer.film.thickness_nm, layer.film.ior,
+                                layer.flake_coverage, conductor_text(layer.flakes));
+    return text_digest(text);
+}
+
+} // namespace reradiant

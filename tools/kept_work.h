@@ -1,0 +1,50 @@
+#pragma once
+
+#include "host/film/merge.h"
+#include "host/layers/stack.h"
+#include "host/spectral/grid.h"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace reradiant {
+
+/// The checkpoint of work whose state is numbers: a file beside the output, written every so many
+/// seconds and when somebody interrupts, removed when the work is done. It says which work it is of
+/// and carries a digest.
+class KeptWork {
+public:
+    /// None is written beside an output that is a device or a pipe. `identity` says what the work
+    /// depends on; the build is added here.
+    KeptWork(const std::filesystem::path& output, SampleIdentity identity, double seconds);
+
+    /// The state to go on from, where there is a checkpoint. Input Error for one that is damaged or
+    /// of other work, naming what differs.
+    std::optional<nlohmann::json> read() const;
+    /// Writes when it is time. Keeps the share of time that goes into writing below a tenth.
+    void keep_when_due(const std::function<nlohmann::json()>& state);
+    void remove() const;
+
+    /// "interrupted; FILE holds what was done, --resume goes on", for standard error.
+    std::string interruption_text() const;
+
+private:
+    void write(const nlohmann::json& state) const;
+
+    std::filesystem::path file_; ///< empty: none
+    SampleIdentity identity_;
+    double seconds_, write_seconds_ = 0.0;
+    std::chrono::steady_clock::time_point written_ = std::chrono::steady_clock::now();
+};
+
+/// Digests of a text, of a file's bytes, and of a stack's numbers at the bands.
+std::string text_digest(const std::string& text);
+std::string file_digest(const std::filesystem::path& file);
+std::string stack_digest(const LayerStack& stack, const WavelengthGrid& bands);
+
+} // namespace reradiant
