@@ -64,7 +64,7 @@ std::optional<Json> KeptWork::read() const {
     if (!bytes.starts_with(name) || bytes.size() < name.size() + digest_characters)
         refuse("it does not begin like one of this version, or is cut off");
     const std::string body = bytes.substr(0, bytes.size() - digest_characters);
-    if (text_digest(body) != bytes.substr(body.size()))
+    if (sha256_hex(body) != bytes.substr(body.size()))
         refuse("its checksum is wrong");
     const Json json = Json::from_cbor(body.substr(name.size()), true, false);
     if (!json.is_object() || !json.contains("identity") || !json.contains("state"))
@@ -80,7 +80,7 @@ void KeptWork::write(const Json& state) const {
     const std::vector<std::uint8_t> cbor =
         Json::to_cbor({{"identity", identity_}, {"state", state}});
     const std::string body = format_name + std::string(cbor.begin(), cbor.end());
-    write_text_atomically(file_, body + text_digest(body));
+    write_text_atomically(file_, body + sha256_hex(body));
 }
 
 void KeptWork::keep_when_due(const std::function<Json()>& state) {
@@ -107,14 +107,14 @@ std::string KeptWork::interruption_text() const {
                : "interrupted; nothing was written";
 }
 
-std::string text_digest(const std::string& text) {
+std::string sha256_hex(const std::string& text) {
     Sha256 sha;
     sha.update(text);
     return sha.hex();
 }
 
 std::string file_digest(const fs::path& file) {
-    return text_digest(whole_file(file));
+    return sha256_hex(whole_file(file));
 }
 
 std::string stack_digest(const LayerStack& stack, const WavelengthGrid& bands) {
@@ -126,7 +126,7 @@ std::string stack_digest(const LayerStack& stack, const WavelengthGrid& bands) {
                                 static_cast<int>(layer.scattering), layer.tau, layer.tau_scattering,
                                 layer.anisotropy, layer.film.thickness_nm, layer.film.ior,
                                 layer.flake_coverage, conductor_text(layer.flakes));
-    return text_digest(text);
+    return sha256_hex(text);
 }
 
 } // namespace reradiant

@@ -43,7 +43,7 @@ private:
 };
 
 /// Digests of a text, of a file's bytes, and of a stack's numbers at the bands.
-std::string text_digest(const std::string& text);
+std::string sha256_hex(const std::string& text);
 std::string file_digest(const std::filesystem::path& file);
 std::string stack_digest(const LayerStack& stack, const WavelengthGrid& bands);
 

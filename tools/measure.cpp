@@ -52,7 +52,7 @@ SampleIdentity walk_identity(const std::filesystem::path& file, const Material& 
         numbers += fmt::format(" {} {}", conductor.ior, conductor.kappa);
     return {{"material", file_digest(file)},
             {"stack", stack_digest(material.stack, bands)},
-            {"substrate", text_digest(numbers)},
+            {"substrate", sha256_hex(numbers)},
             {"bands", fmt::format("{}:{}:{}", bands.from_nm, bands.to_nm(), bands.step_nm)},
             {"model", model_name(request.model)},
             {"theta_i", fmt::format("{}", fmt::join(request.theta_i_deg, ","))},

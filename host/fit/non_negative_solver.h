@@ -16,8 +16,6 @@ class Problem;
 
 namespace reradiant {
 
-class SolveJournal;
-
 /// How the linear systems of a step are solved.
 struct LinearAlgebra {
     enum class Type { DenseNormal, SparseNormal } type = Type::DenseNormal;
@@ -42,8 +40,7 @@ struct SolverSettings {
     double kkt_tolerance = 1e-8;
     double most_seconds = 60.0;
     int threads = 1;
-    StopFlag stop = nullptr;         ///< asked before every step
-    SolveJournal* journal = nullptr; ///< keeps every step, and has those of an earlier run
+    StopFlag stop = nullptr; ///< asked before every step
 };
 
 /// How a minimisation went.
