@@ -124,6 +124,8 @@ cl::Program build_source(const Device& device, const std::string& file, const st
 
 cl::Program build_program(const Device& device, const std::string& file,
                           const KernelDefines& defines, BuildStatistics* statistics) {
+    if (statistics)
+        statistics->defines = defines;
     return build_source(device, file, kernel_source(data_directory(), file, defines), statistics);
 }
 

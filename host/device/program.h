@@ -14,6 +14,7 @@ struct BuildStatistics {
     int built = 0, from_cache = 0;
     double seconds = 0.0;
     std::size_t source_bytes = 0; ///< before the compiler leaves anything out
+    KernelDefines defines;        ///< of the last program
     std::size_t binary_bytes = 0; ///< of the programs as the driver keeps them
 };
 
