@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -71,8 +72,9 @@ void for_each_pixel(const FilmStrip& strip, const FilmLayout& layout, int bands,
     });
 }
 
-double accepted(const FilmStrip& strip, std::size_t pixel, std::uint32_t samples) {
-    return samples - static_cast<double>(strip.statistics[pixel * film_statistics_per_pixel + 4]);
+double accepted(const FilmStrip& strip, std::size_t pixel) {
+    return strip.samples(pixel) -
+           static_cast<double>(strip.statistics[pixel * film_statistics_per_pixel + 4]);
 }
 
 double variance_of_mean(double sum, double sum_of_squares, double n) {
@@ -94,7 +96,7 @@ std::size_t pixels_of(FilmSums film) {
 
 /// Mean over pixels and bands. Sums by chunk, added in order: the result does not depend on
 /// threads. Between passes this counts in the time of a render, so bands are not told apart.
-double mean_radiance(FilmSums film, const FilmLayout& layout, int bands, std::uint32_t samples) {
+double mean_radiance(FilmSums film, const FilmLayout& layout, int bands) {
     std::vector<float> weights(static_cast<std::size_t>(layout.lanes), 0.0f);
     for (std::size_t c = 0; c < layout.columns.size(); ++c)
         if (layout.columns[c].band >= 0)
@@ -105,7 +107,7 @@ double mean_radiance(FilmSums film, const FilmLayout& layout, int bands, std::ui
         for_each_chunk(strip, [&](std::size_t first, std::size_t end, std::size_t chunk) {
             for (std::size_t pixel = first; pixel < end; ++pixel) {
                 const float* sums = strip.sums.data() + pixel * layout.floats_per_pixel();
-                const double n = accepted(strip, pixel, samples);
+                const double n = accepted(strip, pixel);
                 // the compensation is below what matters to a mean
                 const float total = std::inner_product(weights.begin(), weights.end(), sums, 0.0f);
                 parts[chunk] += n > 0.0 ? static_cast<double>(total) / n : 0.0;
@@ -116,18 +118,20 @@ double mean_radiance(FilmSums film, const FilmLayout& layout, int bands, std::ui
 
 /// Half the difference of the even and the odd samples' means in one band: its square has the
 /// variance of the mean as expectation.
-double half_difference(const PixelSums& sums, std::size_t band, double n, std::uint32_t samples) {
-    // With an odd count the even half has one sample more.
+double half_difference(const PixelSums& sums, std::size_t band, double n, std::uint32_t samples,
+                       bool begins_odd) {
+    // With an odd count the half of the first sample has one more.
     const double one_more = samples % 2 == 1 ? sums.sum[band] / n : 0.0;
-    return (sums.alternating[band] - one_more) / n;
+    return (sums.alternating[band] - (begins_odd ? -one_more : one_more)) / n;
 }
 
 /// d^2 / (value^2 + floor) of one pixel, added over its bands.
-double squared_error(const PixelSums& sums, double n, std::uint32_t samples, double floor) {
+double squared_error(const PixelSums& sums, double n, std::uint32_t samples, bool begins_odd,
+                     double floor) {
     double total = 0.0;
     for (std::size_t b = 0; b < sums.sum.size() && n > 0.0; ++b) {
         const double value = sums.sum[b] / n;
-        const double d = half_difference(sums, b, n, samples);
+        const double d = half_difference(sums, b, n, samples, begins_odd);
         if (value * value + floor > 0.0)
             total += d * d / (value * value + floor);
     }
@@ -210,6 +214,10 @@ FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool forc
     return layout;
 }
 
+std::uint32_t FilmStrip::samples(std::size_t pixel) const {
+    return std::bit_cast<std::uint32_t>(statistics[pixel * film_statistics_per_pixel + 5]);
+}
+
 std::uint64_t FilmStrip::refused() const {
     double total = 0.0;
     for (std::size_t i = 4; i < statistics.size(); i += film_statistics_per_pixel)
@@ -218,8 +226,8 @@ std::uint64_t FilmStrip::refused() const {
 }
 
 FilmResolver::FilmResolver(const FilmLayout& layout, int width, int height,
-                           const WavelengthGrid& bands, std::uint32_t samples)
-    : layout_(layout), samples_(samples) {
+                           const WavelengthGrid& bands)
+    : layout_(layout) {
     image_.width = width;
     image_.height = height;
     image_.bands = bands;
@@ -242,27 +250,29 @@ void FilmResolver::add(const FilmStrip& strip) {
     image_.values.resize(entries);
     image_.variance_bands.resize(by_band ? entries : 0);
     halves_bands_.resize(image_.variance_bands.size());
-    for_each_pixel(strip, layout_, static_cast<int>(bands),
-                   [&](std::size_t at, const PixelSums& sums, std::size_t) {
-                       const std::size_t pixel = strip.first_pixel + at;
-                       const double n = accepted(strip, at, samples_);
-                       double luminance = 0.0;
-                       for (std::size_t b = 0; b < bands; ++b) {
-                           const double d = n > 0.0 ? half_difference(sums, b, n, samples_) : 0.0;
-                           luminance += y_weights_[b] * d;
-                           image_.values[pixel * bands + b] =
-                               static_cast<float>(n > 0.0 ? sums.sum[b] / n : 0.0);
-                           if (by_band) {
-                               halves_bands_[pixel * bands + b] = static_cast<float>(d * d);
-                               image_.variance_bands[pixel * bands + b] = static_cast<float>(
-                                   variance_of_mean(sums.sum[b], sums.squares[b], n));
-                           }
-                       }
-                       halves_y_[pixel] = static_cast<float>(luminance * luminance);
-                       image_.sample_count[pixel] = static_cast<float>(n);
-                       image_.variance_y[pixel] =
-                           static_cast<float>(luminance_variance(strip, at, n));
-                   });
+    for_each_pixel(
+        strip, layout_, static_cast<int>(bands),
+        [&](std::size_t at, const PixelSums& sums, std::size_t) {
+            const std::size_t pixel = strip.first_pixel + at;
+            const double n = accepted(strip, at);
+            const std::uint32_t samples = strip.samples(at);
+            double luminance = 0.0;
+            for (std::size_t b = 0; b < bands; ++b) {
+                const double d =
+                    n > 0.0 ? half_difference(sums, b, n, samples, layout_.begins_odd) : 0.0;
+                luminance += y_weights_[b] * d;
+                image_.values[pixel * bands + b] =
+                    static_cast<float>(n > 0.0 ? sums.sum[b] / n : 0.0);
+                if (by_band) {
+                    halves_bands_[pixel * bands + b] = static_cast<float>(d * d);
+                    image_.variance_bands[pixel * bands + b] =
+                        static_cast<float>(variance_of_mean(sums.sum[b], sums.squares[b], n));
+                }
+            }
+            halves_y_[pixel] = static_cast<float>(luminance * luminance);
+            image_.sample_count[pixel] = static_cast<float>(n);
+            image_.variance_y[pixel] = static_cast<float>(luminance_variance(strip, at, n));
+        });
 }
 
 SpectralImage FilmResolver::take() {
@@ -275,18 +285,26 @@ SpectralImage FilmResolver::take() {
 }
 
 RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int bands,
-                                std::uint32_t samples) {
-    if (samples < 2)
-        return {};
-    const double mean = mean_radiance(film, layout, bands, samples);
+                                std::vector<float>* pixel_errors) {
+    for (const FilmStrip& strip : film)
+        for (std::size_t pixel = 0; pixel < strip.pixels(); ++pixel)
+            if (strip.samples(pixel) < 2)
+                return {};
+    const double mean = mean_radiance(film, layout, bands);
     const double floor = 0.01 * mean * mean;
     std::vector<ErrorSums> parts(chunks_of(pixels_of(film)));
+    if (pixel_errors)
+        pixel_errors->resize(pixels_of(film));
     for (const FilmStrip& strip : film)
-        for_each_pixel(strip, layout, bands,
-                       [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
-                           const double n = accepted(strip, pixel, samples);
-                           parts[chunk].add(squared_error(sums, n, samples, floor) / bands);
-                       });
+        for_each_pixel(
+            strip, layout, bands, [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
+                const double error = squared_error(sums, accepted(strip, pixel),
+                                                   strip.samples(pixel), layout.begins_odd, floor) /
+                                     bands;
+                parts[chunk].add(error);
+                if (pixel_errors)
+                    (*pixel_errors)[strip.first_pixel + pixel] = static_cast<float>(error);
+            });
     return estimate_from(parts);
 }
 

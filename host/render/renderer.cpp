@@ -6,6 +6,7 @@
 #include "host/render/film_sums.h"
 #include "host/render/hero_tables.h"
 #include "host/render/render_identity.h"
+#include "host/render/sampling_schedule.h"
 #include "host/render/scene_tables.h"
 #include "host/render/stack_optics.h"
 #include "host/render/wavefront.h"
@@ -24,7 +25,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Samples of a pass: between passes the film is read and the stop rules are checked.
-constexpr std::uint32_t samples_in_pass = 64;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -74,34 +74,9 @@ std::uint32_t sequence_blocks(const RenderOptions& options) {
     return options.band_variance ? 0 : 7;
 }
 
-/// Doubling passes: the first ones show and estimate early, later ones cost little to stop, and
-/// take a sixteenth of what is done, so that their number stays small. None is longer than the time
-/// between two checkpoints.
-std::uint32_t next_pass(const RenderProgress& state, const RenderOptions& options) {
-    const std::uint32_t done = state.samples;
-    std::uint32_t size = std::max(std::clamp<std::uint32_t>(done, 1, samples_in_pass), done / 16);
-    const double affordable = done * options.checkpoint_seconds / std::max(state.seconds, 1e-9);
-    if (!options.checkpoint.empty() && done > 0 && affordable < size)
-        size = std::max(1u, static_cast<std::uint32_t>(affordable));
-    return std::min(size, options.samples - done);
-}
-
-bool must_stop(const RenderProgress& state, const RenderOptions& options) {
-    return state.samples >= options.samples || state.seconds >= options.time_seconds ||
-           (options.relmse > 0.0 && state.relmse <= options.relmse);
-}
-
-void estimate_error(RenderProgress& state, FilmSums film, const FilmLayout& layout,
-                    const WavelengthPlan& plan) {
-    const RelmseEstimate estimate = estimated_relmse(film, layout, plan.film.count, state.samples);
-    state.relmse = estimate.value;
-    state.relmse_low = estimate.low;
-    state.relmse_high = estimate.high;
-}
-
-FilmResolver film_resolver(const FilmLayout& layout, const Scene& scene, const WavelengthPlan& plan,
-                           const RenderProgress& state) {
-    return {layout, scene.film.width, scene.film.height, plan.film, state.samples};
+FilmResolver film_resolver(const FilmLayout& layout, const Scene& scene,
+                           const WavelengthPlan& plan) {
+    return {layout, scene.film.width, scene.film.height, plan.film};
 }
 
 SpectralImage resolved(const Wavefront& wavefront, FilmResolver resolver) {
@@ -248,9 +223,11 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
     const std::uint64_t paths =
         options.batch_paths * (depth * vertex + models.path + lanes * 4 + sizeof(RayRecord) +
                                sizeof(HitRecord) + sizeof(PathState));
+    const std::uint64_t choosing =
+        options.adaptive ? pixels * (2 * sizeof(PixelSamples) + sizeof(float)) : 0;
     // The film goes as the image comes, but for observers of passes, who see an image beside it; a
     // checkpoint is read as a whole.
-    return film + image + (options.resume ? film : 0) + paths;
+    return film + image + (options.resume ? film : 0) + paths + choosing;
 }
 
 RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
@@ -269,30 +246,28 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
                         {static_cast<std::uint32_t>(scene.integrator.max_depth),
                          static_cast<std::uint32_t>(scene.integrator.min_depth), options.seed,
                          options.batch_paths, options.threads, sequence_blocks(options),
-                         options.on_rays},
+                         options.adaptive, options.on_rays},
                         result.build);
     result.setup_seconds = seconds_since(start) - result.build.seconds;
 
     FilmLayout layout =
         film_layout(result.plan, tables.features.band_variance, tables.features.scatter);
     layout.independent_samples = sequence_blocks(options) == 0;
+    layout.begins_odd = options.first_sample % 2 == 1;
+    SamplingSchedule schedule(scene, options, result.plan, layout);
     Checkpoints checkpoints(scene, device, options);
     RenderProgress state = checkpoints.resume(wavefront, result);
     const double seconds_before = state.seconds;
     double observing_seconds = 0.0;
     const Clock::time_point rendering = Clock::now();
-    while (!must_stop(state, options)) {
-        const std::uint32_t samples = next_pass(state, options);
-        wavefront.render_pass(options.first_sample + state.samples, samples);
-        state.samples += samples;
+    while (!schedule.must_stop(state) && schedule.render_pass(wavefront, state)) {
         state.seconds = seconds_before + seconds_since(rendering) - observing_seconds;
-        wavefront.film().read(
-            [&](FilmSums film) { estimate_error(state, film, layout, result.plan); });
+        schedule.estimate_error(wavefront, state);
         result.passes.push_back(state);
         if (observe)
             observing_seconds += seconds_of([&] {
                 observe(state, [&] {
-                    return resolved(wavefront, film_resolver(layout, scene, result.plan, state));
+                    return resolved(wavefront, film_resolver(layout, scene, result.plan));
                 });
             });
         result.interrupted = progress && !progress(state);
@@ -300,7 +275,7 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
         if (result.interrupted)
             break;
     }
-    finish_film(result, wavefront, film_resolver(layout, scene, result.plan, state));
+    finish_film(result, wavefront, film_resolver(layout, scene, result.plan));
     result.samples = state.samples;
     result.relmse = state.relmse;
     collect(result, wavefront, tables);

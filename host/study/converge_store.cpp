@@ -92,13 +92,10 @@ RelmseEstimate estimate_from_json(const Json& json) {
 }
 
 Json curve_json(const ErrorCurve& curve) {
-    Json json = {{"method", curve.method.name},
-                 {"model", model_name(curve.method.model)},
-                 {"comb", curve.method.comb_count},
-                 {"hero", curve.method.hero_count},
-                 {"setup_seconds", curve.setup_seconds},
-                 {"build_seconds", curve.build_seconds},
-                 {"rows", Json::array()}};
+    Json json = {{"method", curve.method.name},          {"model", model_name(curve.method.model)},
+                 {"comb", curve.method.comb_count},      {"hero", curve.method.hero_count},
+                 {"adaptive", curve.method.adaptive},    {"setup_seconds", curve.setup_seconds},
+                 {"build_seconds", curve.build_seconds}, {"rows", Json::array()}};
     for (const CurveRow& row : curve.rows)
         json["rows"].push_back(row_json(row));
     return json;

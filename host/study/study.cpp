@@ -127,6 +127,7 @@ private:
         render.model = study_.rendering->method.model;
         render.wavelengths.comb_count = study_.rendering->method.comb_count;
         render.wavelengths.hero_count = study_.rendering->method.hero_count;
+        render.adaptive = study_.rendering->method.adaptive;
         RenderResult rendered =
             reradiant::render(scene, *device_, render, [&](const RenderProgress& state) {
                 const double share = static_cast<double>(state.samples) / render.samples;
