@@ -140,30 +140,44 @@ double squared_error(const PixelSums& sums, double n, std::uint32_t samples, boo
 
 /// The errors of pixels that are added in order, and how far neighbours differ.
 struct ErrorSums {
-    double sum = 0.0, squared_differences = 0.0, waiting = 0.0;
+    double sum = 0.0, squared_differences = 0.0, fourth_powers = 0.0, waiting = 0.0;
     std::size_t pixels = 0;
 
     void add(double error) {
-        if (pixels++ % 2 == 1)
-            squared_differences += (error - waiting) * (error - waiting);
+        if (pixels++ % 2 == 1) {
+            const double square = (error - waiting) * (error - waiting);
+            squared_differences += square;
+            fourth_powers += square * square;
+        }
         waiting = error;
         sum += error;
     }
 };
+
+/// Student's t that 97.5 % lie below, from 3 degrees of freedom on, to 0.04 (expansion in their
+/// inverse: Abramowitz and Stegun, 26.7.5).
+double student_quantile(double freedom) {
+    constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+    return z + (z3 + z) / (4.0 * freedom) +
+           (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * freedom * freedom) +
+           (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * freedom * freedom * freedom);
+}
 
 /// Pixels are independent but differ in their expected errors, so that the spread over the image
 /// says little about the noise of the mean. Neighbours are alike: half the squared difference of
 /// two is the variance of one, or somewhat more (collapsed strata; Cochran, Sampling Techniques,
 /// 5A.12). The error that the image has and the estimate of it are two such means that hardly
 /// correlate (sum and difference of the halves), hence twice the variance; their ratio is near an
-/// F distribution of equal degrees of freedom, which is symmetric in its logarithm.
+/// F distribution of equal degrees of freedom, which is symmetric in its logarithm. Where a few
+/// pixels hold most of the variance, it is itself hardly known: Student's t with the degrees of
+/// freedom that the differences' kurtosis leaves.
 RelmseEstimate estimate_from(const std::vector<ErrorSums>& parts) {
-    constexpr double normal_quantile = 1.959964; // of 97.5 %
-    double sum = 0.0, variance = 0.0;
+    double sum = 0.0, variance = 0.0, fourth_powers = 0.0;
     std::size_t pixels = 0, paired = 0;
     for (const ErrorSums& part : parts) {
         sum += part.sum;
         variance += part.squared_differences;
+        fourth_powers += part.fourth_powers;
         pixels += part.pixels;
         paired += part.pixels / 2 * 2;
     }
@@ -171,9 +185,12 @@ RelmseEstimate estimate_from(const std::vector<ErrorSums>& parts) {
     estimate.value = sum / static_cast<double>(pixels);
     if (paired == 0)
         return estimate;
+    // m squares of normal deviates have m degrees of freedom and a squared sum m / 3 times that of
+    // their squares
+    const double freedom = fourth_powers > 0.0 ? 3.0 * variance * variance / fourth_powers : 3.0;
     variance *= static_cast<double>(pixels) / static_cast<double>(paired);
     const double spread =
-        sum > 0.0 ? std::exp(normal_quantile * std::sqrt(2.0 * variance) / sum) : 1.0;
+        sum > 0.0 ? std::exp(student_quantile(freedom) * std::sqrt(2.0 * variance) / sum) : 1.0;
     estimate.low = estimate.value / spread;
     estimate.high = estimate.value * spread;
     return estimate;
