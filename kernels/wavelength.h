@@ -14,7 +14,7 @@ KERNELS_BEGIN
 /// the error, then knows of phases that were not seen yet.
 DEVICE_FUNCTION uint wavelength_phase(uint pixel, uint sample, uint phases, uint seed) {
     const uint order = random_hash(2u * pixel + (sample & 1u), seed);
-    const uint place = sequence_scrambled(sequence_reversed(sample >> 1), order);
+    const uint place = sequence_scrambled(sample >> 1, order); // the index is the reversed inverse
     return ((place >> 16) * phases) >> 16;
 }
 

@@ -1,3 +1,4 @@
+#include "host/cluster/cluster.h"
 #include "host/error.h"
 #include "tools/command.h"
 #include "tools/versions.h"
@@ -90,7 +91,7 @@ std::string quoted_command_line(int argc, char** argv) {
 }
 
 int fail(int code, const std::string& message) {
-    fmt::print(stderr, "{}\n", message);
+    fail_in_cluster(code, message);
     return code;
 }
 

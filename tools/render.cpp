@@ -5,11 +5,13 @@
 #include "host/render/render_identity.h"
 #include "host/render/render_statistics.h"
 #include "host/render/renderer.h"
+#include "host/render/team_render.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
 #include "host/scene/scene.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
+#include "tools/join_team.h"
 #include "tools/parse_options.h"
 #include "tools/tev_preview.h"
 
@@ -106,21 +108,11 @@ int report_interruption(const RenderResult& result, const RenderCommand& command
     return exit_interrupted;
 }
 
-int run_render(RenderCommand command, const CommandContext& context) {
-    const CommonOptions& common = context.common;
-    apply_texts(command, common);
-    check_output_folder(command.output);
-    const Scene scene = load_scene(command.scene);
-    prepare_opencl(common.threads);
-    const Device device(common.device);
-    command.render.checkpoint = command.checkpoint_file();
-    if (is_done(command, scene, device)) {
-        if (!common.quiet)
-            fmt::print("{}: is this render already, with {} samples a pixel\n",
-                       command.output.string(), command.render.samples);
-        return 0;
-    }
-    TevPreview preview(command.tev, command.output.filename().string());
+/// Renders, alone or with a team, until a stop rule is met or somebody interrupts.
+RenderResult render_image(const RenderCommand& command, const CommonOptions& common,
+                          const Scene& scene, const Device& device, Team* team) {
+    TevPreview preview(team == nullptr || team->leads() ? command.tev : "",
+                       command.output.filename().string());
     RenderObserver show;
     if (preview.is_open())
         show = [&preview](const RenderProgress&, const std::function<SpectralImage()>& image) {
@@ -128,36 +120,61 @@ int run_render(RenderCommand command, const CommandContext& context) {
                 preview.update(image());
         };
     catch_interrupts(); // the pass ends and a checkpoint is written
-    RenderResult result;
-    {
-        ProgressBar bar(common.quiet);
-        result = render(
-            scene, device, command.render,
-            [&](const RenderProgress& state) {
-                const double by_samples =
-                    static_cast<double>(state.samples) / command.render.samples;
-                const double by_time = state.seconds / command.render.time_seconds;
-                bar.update(std::min(1.0, std::max(by_samples, by_time)),
-                           fmt::format("{} spp, relMSE {:.2g}", state.samples, state.relmse));
-                return !interrupt_requested();
-            },
-            show);
+    ProgressBar bar(common.quiet);
+    const auto progress = [&](const RenderProgress& state) {
+        const double by_samples = static_cast<double>(state.samples) / command.render.samples;
+        const double by_time = state.seconds / command.render.time_seconds;
+        bar.update(std::min(1.0, std::max(by_samples, by_time)),
+                   fmt::format("{} spp, relMSE {:.2g}", state.samples, state.relmse));
+        return !interrupt_requested();
+    };
+    return team != nullptr ? render_together(scene, device, command.render, *team, progress, show)
+                           : render(scene, device, command.render, progress, show);
+}
+
+void write_results(const RenderCommand& command, const CommonOptions& common,
+                   const RenderResult& result) {
+    write_spectral_exr(command.output, result.image, command.display.exposure_ev);
+    if (command.png.empty())
+        return;
+    const std::size_t outside = write_display_png(command.png, result.image, command.display);
+    if (outside > 0 && !common.quiet)
+        fmt::print("{} of {} pixels lie outside the display's gamut\n", outside,
+                   static_cast<std::size_t>(result.image.width) *
+                       static_cast<std::size_t>(result.image.height));
+}
+
+int run_render(RenderCommand command, const CommandContext& context) {
+    CommonOptions common = context.common;
+    const std::unique_ptr<Team> team = join_team(common);
+    apply_texts(command, common);
+    check_output_folder(command.output);
+    const Scene scene = load_scene(command.scene);
+    prepare_opencl(common.threads);
+    const Device device(common.device);
+    command.render.checkpoint = command.checkpoint_file();
+    command.render.processes_on_machine = members_on_host(team);
+    const bool done = is_done(command, scene, device);
+    if (team ? team->from_leader(done) != 0 : done) {
+        if (!common.quiet)
+            fmt::print("{}: is this render already, with {} samples a pixel\n",
+                       command.output.string(), command.render.samples);
+        return 0;
     }
+    RenderResult result = render_image(command, common, scene, device, team.get());
+    if (team && !team->leads())
+        return 0;
     if (result.interrupted)
         return report_interruption(result, command);
     describe_image(result, scene, device, command.render, context.command_line);
     if (result.non_finite > 0)
         spdlog::warn("{} samples were not finite and were left out", result.non_finite);
-    write_spectral_exr(command.output, result.image, command.display.exposure_ev);
-    if (!command.png.empty()) {
-        const std::size_t outside = write_display_png(command.png, result.image, command.display);
-        if (outside > 0 && !common.quiet)
-            fmt::print("{} of {} pixels lie outside the display's gamut\n", outside,
-                       static_cast<std::size_t>(result.image.width) *
-                           static_cast<std::size_t>(result.image.height));
+    write_results(command, common, result);
+    if (!common.json.empty()) {
+        auto json = render_statistics(result, device, command.model);
+        json["ranks"] = team ? team->size() : 1;
+        write_json(common.json, json);
     }
-    if (!common.json.empty())
-        write_json(common.json, render_statistics(result, device, command.model));
     if (!common.quiet)
         print_summary(result, command);
     return 0;

@@ -1,5 +1,7 @@
 #include "tools/versions.h"
 
+#include "host/cluster/cluster.h"
+
 #include <CLI/Version.hpp>
 #include <Eigen/Core>
 #include <OpenColorIO/OpenColorIO.h>
@@ -13,11 +15,12 @@ namespace reradiant {
 std::string version_text() {
     return fmt::format("reradiant {}\n"
                        "OpenEXR {}, OpenColorIO {}, libpng {}\n"
-                       "Eigen {}.{}.{}, CLI11 {}, nlohmann json {}.{}.{}",
+                       "Eigen {}.{}.{}, CLI11 {}, nlohmann json {}.{}.{}\n"
+                       "{}",
                        RERADIANT_VERSION, OPENEXR_VERSION_STRING, OCIO_NAMESPACE::GetVersion(),
                        PNG_LIBPNG_VER_STRING, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
                        EIGEN_MINOR_VERSION, CLI11_VERSION, NLOHMANN_JSON_VERSION_MAJOR,
-                       NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
+                       NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH, mpi_version());
 }
 
 } // namespace reradiant

@@ -108,6 +108,14 @@ void give_out(Tiles& tiles, std::uint64_t budget, std::uint64_t most) {
 
 } // namespace
 
+std::uint64_t samples_of(FilmSums film) {
+    std::uint64_t samples = 0;
+    for (const FilmStrip& strip : film)
+        for (std::size_t pixel = 0; pixel < strip.pixels(); ++pixel)
+            samples += strip.samples(pixel);
+    return samples;
+}
+
 std::uint32_t samples_before_adapting(const WavelengthPlan& plan) {
     return std::clamp(2u * static_cast<std::uint32_t>(plan.phases), 16u, 64u);
 }

@@ -14,6 +14,9 @@ struct AdaptiveGroup {
     std::vector<PixelSamples> pixels;
 };
 
+/// Samples that were taken of all pixels together.
+std::uint64_t samples_of(FilmSums film);
+
 /// Samples that every pixel has before their errors say where the next ones go: both halves of the
 /// film have seen every phase of the comb by then, within reason.
 std::uint32_t samples_before_adapting(const WavelengthPlan& plan);

@@ -44,6 +44,18 @@ void DeviceFilm::read(const std::function<void(FilmSums)>& use) const {
     });
 }
 
+void DeviceFilm::change(
+    const std::function<void(std::span<float>, std::span<float>)>& change) const {
+    opencl_checked("changing the film", [&] {
+        for (const Strip& strip : strips_) {
+            constexpr cl_map_flags both = CL_MAP_READ | CL_MAP_WRITE;
+            const auto sums = strip.sums.map(both, 0, strip.sums.size());
+            const auto statistics = strip.statistics.map(both, 0, strip.statistics.size());
+            change(sums.span(), statistics.span());
+        }
+    });
+}
+
 void DeviceFilm::take(const std::function<void(const FilmStrip&)>& use) {
     opencl_checked("reading the film", [&] {
         for (Strip& strip : strips_) {

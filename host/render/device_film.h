@@ -28,6 +28,8 @@ public:
     const std::vector<Strip>& strips() const { return strips_; }
     /// Calls `use` with the sums as they are on the device, mapped for the call.
     void read(const std::function<void(FilmSums)>& use) const;
+    /// Calls `change` with the sums and statistics of one strip after the other.
+    void change(const std::function<void(std::span<float>, std::span<float>)>& change) const;
     /// Calls `use` with one strip after the other and frees its memory. Nothing can be rendered
     /// afterwards.
     void take(const std::function<void(const FilmStrip&)>& use);

@@ -1,288 +1,84 @@
 #include "host/render/renderer.h"
 
-#include "host/error.h"
-#include "host/geometry/geometry.h"
-#include "host/render/checkpoint.h"
-#include "host/render/film_sums.h"
-#include "host/render/hero_tables.h"
-#include "host/render/render_identity.h"
-#include "host/render/sampling_schedule.h"
-#include "host/render/scene_tables.h"
-#include "host/render/stack_optics.h"
-#include "host/render/wavefront.h"
-#include "host/scene/model_choice.h"
-
-#include <fmt/format.h>
+#include "host/render/adaptive.h"
+#include "host/render/rendering.h"
 
 #include <algorithm>
-#include <chrono>
-#include <unistd.h>
 
 namespace reradiant {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Samples of a pass: between passes the film is read and the stop rules are checked.
+constexpr std::uint32_t samples_in_pass = 64;
 
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
+/// Doubling passes: the first ones show and estimate early, later ones cost little to stop, and
+/// take a sixteenth of what is done, so that their number stays small.
+std::uint32_t usual_pass(std::uint32_t done) {
+    return std::max(std::clamp<std::uint32_t>(done, 1, samples_in_pass), done / 16);
 }
 
-double seconds_of(const std::function<void()>& work) {
-    const Clock::time_point start = Clock::now();
-    work();
-    return seconds_since(start);
+/// A usual pass, but none longer than the time between two checkpoints.
+std::uint32_t next_pass(const RenderProgress& state, const RenderOptions& options) {
+    const std::uint32_t done = state.samples;
+    std::uint32_t size = usual_pass(done);
+    const double affordable = done * options.checkpoint_seconds / std::max(state.seconds, 1e-9);
+    if (!options.checkpoint.empty() && done > 0 && affordable < size)
+        size = std::max(1u, static_cast<std::uint32_t>(affordable));
+    return std::min(size, options.samples - done);
 }
 
-std::uint64_t machine_memory_bytes() {
-    return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-           static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE));
-}
-
-void check_memory(const Scene& scene, const WavelengthPlan& plan, const RenderOptions& options) {
-    const std::uint64_t limit =
-        options.memory_limit_bytes ? options.memory_limit_bytes : machine_memory_bytes() / 5 * 4;
-    const std::uint64_t needed = predicted_render_bytes(scene, plan, options);
-    if (needed > limit)
-        throw_input_error(
-            {scene.file.string()},
-            fmt::format("the render would take {} bytes, the limit is {}", needed, limit),
-            "make the film smaller, take fewer bands or raise --memory-limit");
-}
-
-SceneTables prepare_tables(const Scene& scene, const WavelengthPlan& plan,
-                           const RenderOptions& options) {
-    const RenderFeatures at_least = options.all_features ? RenderFeatures::all()
-                                    : options.also_on.empty()
-                                        ? RenderFeatures{}
-                                        : RenderFeatures::only(options.also_on);
-    SceneTables tables = build_scene_tables(scene, plan, options.model, at_least);
-    const FilmLayout layout =
-        film_layout(plan, options.band_variance || at_least.band_variance, at_least.scatter);
-    tables.features.scatter = layout.scatter;
-    tables.features.band_variance = layout.band_variance;
-    tables.features.in_double = options.in_double;
-    return tables;
-}
-
-/// The camera's numbers, and those for light and direction at the first three vertices, come from
-/// the sequence: later ones are smoothed by those before them. Variances per band are those of
-/// independent samples, so that parts of a render can be put together.
-std::uint32_t sequence_blocks(const RenderOptions& options) {
-    return options.band_variance ? 0 : 7;
-}
-
-FilmResolver film_resolver(const FilmLayout& layout, const Scene& scene,
-                           const WavelengthPlan& plan) {
-    return {layout, scene.film.width, scene.film.height, plan.film};
-}
-
-SpectralImage resolved(const Wavefront& wavefront, FilmResolver resolver) {
-    wavefront.film().read([&](FilmSums film) {
-        for (const FilmStrip& strip : film)
-            resolver.add(strip);
+/// Where samples of a pass go that is as large as a usual one. Does not depend on how long earlier
+/// passes took: a resumed render takes the same samples.
+std::vector<AdaptiveGroup> adaptive_pass(Rendering& rendering, const Scene& scene,
+                                         const RenderOptions& options) {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(scene.film.width) *
+                                 static_cast<std::uint64_t>(scene.film.height);
+    const std::span<const float> errors = rendering.pixel_errors();
+    std::vector<AdaptiveGroup> groups;
+    rendering.wavefront().film().read([&](FilmSums film) {
+        const std::uint64_t left = pixels * options.samples - samples_of(film);
+        const std::uint64_t usual = pixels * usual_pass(rendering.state().samples);
+        groups = adaptive_groups(film, errors, scene.film.width, scene.film.height,
+                                 options.first_sample, std::min(usual, left), left);
     });
-    return resolver.take();
+    return groups;
 }
 
-/// Takes the film out of the wavefront; the image needs no memory on top of it.
-void finish_film(RenderResult& result, Wavefront& wavefront, FilmResolver resolver) {
-    wavefront.film().take([&](const FilmStrip& strip) {
-        resolver.add(strip);
-        result.non_finite += strip.refused();
-    });
-    result.image = resolver.take();
+/// Renders one pass and returns the samples that the pixels have on the average.
+std::uint32_t render_pass(Rendering& rendering, const Scene& scene, const RenderOptions& options) {
+    const std::uint32_t done = rendering.state().samples;
+    const std::uint32_t even =
+        options.adaptive ? samples_before_adapting(rendering.plan()) : options.samples;
+    if (done < even) {
+        const std::uint32_t samples = std::min(next_pass(rendering.state(), options), even - done);
+        rendering.wavefront().render_pass(options.first_sample + done, samples);
+        return done + samples;
+    }
+    const std::vector<AdaptiveGroup> groups = adaptive_pass(rendering, scene, options);
+    for (const AdaptiveGroup& group : groups)
+        rendering.wavefront().render_pass(group.pixels, group.samples);
+    std::uint64_t taken = 0;
+    rendering.wavefront().film().read([&](FilmSums film) { taken = samples_of(film); });
+    return static_cast<std::uint32_t>(taken / (static_cast<std::uint64_t>(scene.film.width) *
+                                               static_cast<std::uint64_t>(scene.film.height)));
 }
-
-void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables& tables) {
-    const WavefrontStatistics& statistics = wavefront.statistics();
-    result.stage_seconds = {
-        {"generate", statistics.generate_seconds}, {"intersect", statistics.intersect_seconds},
-        {"shade", statistics.shade_seconds},       {"occlude", statistics.occlude_seconds},
-        {"gather", statistics.gather_seconds},     {"film", statistics.film_seconds}};
-    result.trace_seconds = statistics.intersect_seconds + statistics.occlude_seconds;
-    result.shade_seconds = statistics.generate_seconds + statistics.shade_seconds +
-                           statistics.gather_seconds + statistics.film_seconds;
-    result.paths += statistics.paths; // on top of a resumed render's
-    result.rays += statistics.rays;
-    result.build_seconds = result.build.seconds;
-    result.mapped_bytes = statistics.mapped_bytes;
-    result.device_bytes = wavefront.device_bytes();
-    result.table_bytes = tables.tables.size() * sizeof(float);
-    result.features = tables.features.listed();
-    result.left_out = tables.features.left_out();
-    result.left_out.insert(result.left_out.end(), result.plan.left_out.begin(),
-                           result.plan.left_out.end());
-    result.notes = tables.notes;
-}
-
-/// What models need of a path's vertices, and of a path that walks.
-struct ModelBytes {
-    std::uint64_t vertex = 0, path = 0;
-};
-ModelBytes model_bytes(const Scene& scene, const WavelengthPlan& plan, Model requested) {
-    int most_lobes = 0;
-    bool walks = false;
-    for (const Material& material : scene.materials) {
-        const Model model = choose_model(material, requested, use_in(plan)).model;
-        walks |= model == Model::Walk;
-        if (model != Model::Walk)
-            most_lobes = std::max(most_lobes, deeper_lobe_count(material, model));
-    }
-    ModelBytes bytes{2 * sizeof(float) * static_cast<std::uint64_t>(most_lobes), 0};
-    if (walks) {
-        bytes.vertex += sizeof(WalkVertexRecord);
-        bytes.path += walk_chunks_a_path * sizeof(WalkChunk);
-    }
-    return bytes;
-}
-
-/// Whether images colour lights or reflectances, so that vertices keep colours.
-bool has_colours(const Scene& scene) {
-    const auto is_image = [](const Light& light) {
-        const auto* sky = std::get_if<EnvironmentLight>(&light);
-        return sky != nullptr && sky->image >= 0;
-    };
-    return std::any_of(scene.lights.begin(), scene.lights.end(), is_image) ||
-           std::any_of(scene.materials.begin(), scene.materials.end(),
-                       [](const Material& m) { return m.substrate.reflectance_image >= 0; });
-}
-
-/// The checkpoint file of one render.
-class Checkpoints {
-public:
-    Checkpoints(const Scene& scene, const Device& device, const RenderOptions& options)
-        : options_(options) {
-        if (!options.checkpoint.empty())
-            head_.identity = render_identity(scene, device, options);
-    }
-
-    /// The state to go on from: that of the checkpoint where there is one and it is asked for.
-    RenderProgress resume(Wavefront& wavefront, RenderResult& result) const {
-        std::error_code ignored;
-        if (options_.checkpoint.empty() || !options_.resume ||
-            !std::filesystem::exists(options_.checkpoint, ignored))
-            return {};
-        const RenderCheckpoint kept =
-            read_checkpoint(options_.checkpoint, head_.identity, wavefront.film().float_count());
-        wavefront.film().restore(kept.sums, kept.statistics);
-        result.passes = kept.passes;
-        result.paths = kept.paths;
-        result.rays = kept.rays;
-        result.resumed_samples = kept.passes.back().samples;
-        return kept.passes.back();
-    }
-
-    /// Writes one when it is time, and for an interrupted render. Keeps the share of time that goes
-    /// into writing below a tenth.
-    void after_pass(const Wavefront& wavefront, const RenderResult& result) {
-        if (options_.checkpoint.empty() ||
-            (!result.interrupted && seconds_since(written_) < std::max(options_.checkpoint_seconds,
-                                                                       10.0 * write_seconds_)))
-            return;
-        const Clock::time_point start = Clock::now();
-        head_.passes = result.passes;
-        head_.paths = result.paths + wavefront.statistics().paths;
-        head_.rays = result.rays + wavefront.statistics().rays;
-        wavefront.film().read(
-            [&](FilmSums film) { write_checkpoint(options_.checkpoint, head_, film); });
-        written_ = Clock::now();
-        write_seconds_ = seconds_since(start);
-    }
-
-    void remove() const {
-        std::error_code ignored;
-        if (!options_.checkpoint.empty())
-            std::filesystem::remove(options_.checkpoint, ignored);
-    }
-
-private:
-    const RenderOptions& options_;
-    RenderCheckpoint head_;
-    Clock::time_point written_ = Clock::now();
-    double write_seconds_ = 0.0;
-};
 
 } // namespace
-
-std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& plan,
-                                     const RenderOptions& options) {
-    const auto pixels = static_cast<std::uint64_t>(scene.film.width) *
-                        static_cast<std::uint64_t>(scene.film.height);
-    const auto lanes = static_cast<std::uint64_t>(plan.padded_lanes());
-    const std::uint64_t rows = options.band_variance ? 4 : 3;
-    const std::uint64_t film = pixels * (rows * lanes + film_statistics_per_pixel) * 4;
-    const std::uint64_t image = pixels * (static_cast<std::uint64_t>(plan.film.count) + 5) * 4;
-    const std::uint64_t depth = static_cast<std::uint64_t>(scene.integrator.max_depth) + 1;
-    const ModelBytes models = model_bytes(scene, plan, options.model);
-    const std::uint64_t vertex = sizeof(VertexRecord) + sizeof(RayRecord) + models.vertex +
-                                 (has_colours(scene) ? VERTEX_COLOURS * sizeof(float) : 0) +
-                                 (plan.hero > 0 ? 8 * hero_width(plan.hero) : 0);
-    const std::uint64_t paths =
-        options.batch_paths * (depth * vertex + models.path + lanes * 4 + sizeof(RayRecord) +
-                               sizeof(HitRecord) + sizeof(PathState));
-    const std::uint64_t choosing =
-        options.adaptive ? pixels * (2 * sizeof(PixelSamples) + sizeof(float)) : 0;
-    // The film goes as the image comes, but for observers of passes, who see an image beside it; a
-    // checkpoint is read as a whole.
-    return film + image + (options.resume ? film : 0) + paths + choosing;
-}
 
 RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
                     const std::function<bool(const RenderProgress&)>& progress,
                     const RenderObserver& observe) {
-    const Clock::time_point start = Clock::now();
-    if (options.in_double)
-        check_double(device.info());
-    RenderResult result;
-    result.plan =
-        plan_wavelengths(scene, options.bands.value_or(film_bands(scene)), options.wavelengths);
-    check_memory(scene, result.plan, options);
-    const SceneTables tables = prepare_tables(scene, result.plan, options);
-    const Geometry geometry(scene, tables.features.textures || tables.features.reflectance_image);
-    Wavefront wavefront(device, geometry, tables, result.plan,
-                        {static_cast<std::uint32_t>(scene.integrator.max_depth),
-                         static_cast<std::uint32_t>(scene.integrator.min_depth), options.seed,
-                         options.batch_paths, options.threads, sequence_blocks(options),
-                         options.adaptive, options.on_rays},
-                        result.build);
-    result.setup_seconds = seconds_since(start) - result.build.seconds;
-
-    FilmLayout layout =
-        film_layout(result.plan, tables.features.band_variance, tables.features.scatter);
-    layout.independent_samples = sequence_blocks(options) == 0;
-    layout.begins_odd = options.first_sample % 2 == 1;
-    SamplingSchedule schedule(scene, options, result.plan, layout);
-    Checkpoints checkpoints(scene, device, options);
-    RenderProgress state = checkpoints.resume(wavefront, result);
-    const double seconds_before = state.seconds;
-    double observing_seconds = 0.0;
-    const Clock::time_point rendering = Clock::now();
-    while (!schedule.must_stop(state) && schedule.render_pass(wavefront, state)) {
-        state.seconds = seconds_before + seconds_since(rendering) - observing_seconds;
-        schedule.estimate_error(wavefront, state);
-        result.passes.push_back(state);
-        if (observe)
-            observing_seconds += seconds_of([&] {
-                observe(state, [&] {
-                    return resolved(wavefront, film_resolver(layout, scene, result.plan));
-                });
-            });
-        result.interrupted = progress && !progress(state);
-        checkpoints.after_pass(wavefront, result);
-        if (result.interrupted)
-            break;
+    Rendering rendering(scene, device, options);
+    rendering.resume();
+    while (!rendering.must_stop() && !rendering.interrupted()) {
+        const std::uint64_t paths = rendering.wavefront().statistics().paths;
+        const std::uint32_t samples = render_pass(rendering, scene, options);
+        if (rendering.wavefront().statistics().paths == paths)
+            break; // no tile of an adaptive render fits what is left
+        rendering.after_pass(samples, observe, progress);
     }
-    finish_film(result, wavefront, film_resolver(layout, scene, result.plan));
-    result.samples = state.samples;
-    result.relmse = state.relmse;
-    collect(result, wavefront, tables);
-    if (!result.interrupted)
-        checkpoints.remove();
-    result.total_seconds = seconds_since(start);
-    return result;
+    return rendering.finish_with_image();
 }
 
 } // namespace reradiant

@@ -36,6 +36,7 @@ struct RenderOptions {
     bool in_double = false; ///< kernels compute in double what they do not keep, for comparison
     std::size_t batch_paths = 1u << 15;
     std::uint64_t memory_limit_bytes = 0; ///< 0: 80 % of the machine's memory
+    int processes_on_machine = 1;         ///< that share it, when there is no limit
     std::filesystem::path checkpoint;     ///< empty: none is written or read
     double checkpoint_seconds = 60.0;     ///< at most so long between two of them
     bool resume = false;                  ///< go on from `checkpoint` where it exists

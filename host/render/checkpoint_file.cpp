@@ -1,0 +1,60 @@
+#include "host/render/checkpoint_file.h"
+
+#include "host/render/render_identity.h"
+
+#include <algorithm>
+
+namespace reradiant {
+
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+} // namespace
+
+CheckpointFile::CheckpointFile(const Scene& scene, const Device& device,
+                               const RenderOptions& options)
+    : options_(options) {
+    if (!options.checkpoint.empty())
+        head_.identity = render_identity(scene, device, options);
+}
+
+RenderProgress CheckpointFile::resume(Wavefront& wavefront, RenderResult& result) const {
+    std::error_code ignored;
+    if (options_.checkpoint.empty() || !options_.resume ||
+        !std::filesystem::exists(options_.checkpoint, ignored))
+        return {};
+    const RenderCheckpoint kept =
+        read_checkpoint(options_.checkpoint, head_.identity, wavefront.film().float_count());
+    wavefront.film().restore(kept.sums, kept.statistics);
+    result.passes = kept.passes;
+    result.paths = kept.paths;
+    result.rays = kept.rays;
+    result.resumed_samples = kept.passes.back().samples;
+    return kept.passes.back();
+}
+
+void CheckpointFile::after_pass(const Wavefront& wavefront, const RenderResult& result) {
+    if (options_.checkpoint.empty() ||
+        (!result.interrupted &&
+         seconds_since(written_) < std::max(options_.checkpoint_seconds, 10.0 * write_seconds_)))
+        return;
+    const Clock::time_point start = Clock::now();
+    head_.passes = result.passes;
+    head_.paths = result.paths + wavefront.statistics().paths;
+    head_.rays = result.rays + wavefront.statistics().rays;
+    wavefront.film().read(
+        [&](FilmSums film) { write_checkpoint(options_.checkpoint, head_, film); });
+    written_ = Clock::now();
+    write_seconds_ = seconds_since(start);
+}
+
+void CheckpointFile::remove() const {
+    std::error_code ignored;
+    if (!options_.checkpoint.empty())
+        std::filesystem::remove(options_.checkpoint, ignored);
+}
+
+} // namespace reradiant

@@ -1,0 +1,145 @@
+// The program under mpirun, on this machine alone. Skipped, loudly, where it was built without MPI
+// or where there is no mpirun.
+#include "tests/tools/program_runner.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace reradiant {
+
+namespace {
+
+class Mpi : public ProgramTest {
+protected:
+    void SetUp() override {
+        if (run("--version").output.find("no MPI") != std::string::npos)
+            GTEST_SKIP() << "NOT TESTED: this build has no MPI";
+        if (std::system("command -v mpirun >/dev/null") != 0)
+            GTEST_SKIP() << "NOT TESTED: there is no mpirun";
+        put("scene.toml", small_scene());
+    }
+
+    /// One core a member, on a machine that may have fewer; a root's container may run it, too.
+    ProgramResult run_ranks(int ranks, const std::string& arguments) const {
+        return shell("mpirun --allow-run-as-root --oversubscribe --bind-to none -n " +
+                     std::to_string(ranks) + " '" RERADIANT_PROGRAM "' " + arguments);
+    }
+    ProgramResult shell(const std::string& command) const {
+        const std::string inside =
+            "cd '" + (folder / "").string() + "' && { " + command + "; } >mpi.out 2>mpi.err";
+        const int status = std::system(inside.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_bytes(folder / "mpi.out"),
+                file_bytes(folder / "mpi.err")};
+    }
+
+    nlohmann::json json(const std::string& name) const {
+        return nlohmann::json::parse(file_bytes(folder / name));
+    }
+    void expect_equal(const std::string& image, const std::string& reference) const {
+        const SpectralImage a = read_spectral_exr(folder / image);
+        const SpectralImage b = read_spectral_exr(folder / reference);
+        ASSERT_EQ(a.sample_count, b.sample_count);
+        for (std::size_t i = 0; i < a.values.size(); ++i)
+            ASSERT_NEAR(a.values[i], b.values[i], 1e-6f * std::abs(b.values[i])) << i;
+        // of float sums of squares, scaled by halves whose sums are floats
+        for (std::size_t i = 0; i < a.variance_y.size(); ++i)
+            ASSERT_NEAR(a.variance_y[i], b.variance_y[i], 1e-3f * std::abs(b.variance_y[i])) << i;
+    }
+};
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+        ++count;
+    return count;
+}
+
+} // namespace
+
+TEST_F(Mpi, AnyNumberOfRanksGivesThePictureOfOne) {
+    ASSERT_EQ(run("render scene.toml -o one.exr --spp 301 --json one.json").exit_code, 0);
+    for (const int ranks : {1, 2, 4}) {
+        const ProgramResult result =
+            run_ranks(ranks, "render scene.toml -o many.exr --spp 301 --json many.json");
+        ASSERT_EQ(result.exit_code, 0) << result.errors;
+        EXPECT_EQ(count_of(result.output, "samples a pixel"), 1u) << "one rank speaks";
+        expect_equal("many.exr", "one.exr");
+        const auto many = json("many.json"), one = json("one.json");
+        EXPECT_EQ(many.at("ranks"), ranks);
+        EXPECT_EQ(many.at("paths"), one.at("paths"));
+        EXPECT_EQ(many.at("rays"), one.at("rays"));
+        const double error = one.at("relmse").get<double>();
+        EXPECT_NEAR(many.at("relmse").get<double>(), error, 1e-4 * error) << "of the same halves";
+    }
+}
+
+TEST_F(Mpi, RulesThatStopARenderStopAllRanks) {
+    ProgramResult result = run_ranks(2, "render scene.toml -o a.exr --error 1e-3 --json a.json");
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_LE(json("a.json").at("relmse").get<double>(), 1e-3);
+    result = run_ranks(2, "render scene.toml -o b.exr --time 1 --json b.json");
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const double seconds = json("b.json").at("passes").back().at("seconds").get<double>();
+    EXPECT_GE(seconds, 1.0);
+    EXPECT_LT(seconds, 5.0);
+    // What was rendered is known exactly, so that one process can render it again.
+    const auto samples = json("b.json").at("spp").get<int>();
+    ASSERT_EQ(run("render scene.toml -o c.exr --spp " + std::to_string(samples)).exit_code, 0);
+    expect_equal("b.exr", "c.exr");
+}
+
+TEST_F(Mpi, WhatIsWrongIsSaidOnceAndEndsAllRanks) {
+    ProgramResult result = run_ranks(3, "render missing.toml -o out.exr");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(count_of(result.errors, "missing.toml"), 1u) << result.errors;
+    result = run_ranks(3, "render scene.toml -o out.exr --spp 0");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(count_of(result.errors, "--spp"), 1u) << result.errors;
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.exr"));
+    // Rank 1 alone has another scene.
+    put("other.toml", replaced(small_scene(), "0.5", "0.6"));
+    result = run_ranks(1, "render scene.toml -o out.exr --spp 4 : -n 1 '" RERADIANT_PROGRAM
+                          "' render other.toml -o out.exr --spp 4");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.errors.find("rank 1 has another scene"), std::string::npos) << result.errors;
+}
+
+TEST_F(Mpi, JobThatDiesGoesOnFromItsCheckpointWithAnyNumberOfRanks) {
+    // mpirun dies without a word, and its ranks with it.
+    const ProgramResult killed =
+        shell("mpirun --allow-run-as-root --oversubscribe --bind-to none -n 2 '" RERADIANT_PROGRAM
+              "' render scene.toml -o out.exr --spp 100000000 --checkpoint 0.2 & job=$!; tries=0; "
+              "until test -e out.exr.checkpoint || test $tries = 600; do sleep 0.1; "
+              "tries=$((tries + 1)); done; sleep 0.5; "
+              "kill -KILL $job; wait $job; sleep 0.5");
+    ASSERT_TRUE(std::filesystem::exists(folder / "out.exr.checkpoint")) << killed.errors;
+    std::filesystem::copy_file(folder / "out.exr.checkpoint", folder / "alone.exr.checkpoint");
+    const ProgramResult result =
+        run_ranks(3, "render scene.toml -o out.exr --resume --time 0.001 --json state.json");
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const auto kept = json("state.json").at("resumed_spp").get<int>();
+    EXPECT_GT(kept, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.exr.checkpoint"));
+    const std::string more = std::to_string(kept + 5);
+    // One process goes on where many stopped, and many where one did.
+    ASSERT_EQ(run("render scene.toml -o alone.exr --resume --spp " + more).exit_code, 0);
+    ASSERT_EQ(run("render scene.toml -o whole.exr --spp " + more).exit_code, 0);
+    expect_equal("alone.exr", "whole.exr");
+}
+
+TEST_F(Mpi, InterruptedJobWritesItsCheckpointAndGoesOn) {
+    const ProgramResult result = shell(
+        "mpirun --allow-run-as-root --oversubscribe --bind-to none --mca odls_base_sigkill_timeout "
+        "20 -n 2 '" RERADIANT_PROGRAM "' render scene.toml -o out.exr --spp 100000000 & job=$!; "
+        "sleep 3; kill -TERM $job; wait $job");
+    EXPECT_NE(result.exit_code, 0);
+    ASSERT_TRUE(std::filesystem::exists(folder / "out.exr.checkpoint")) << result.errors;
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.exr"));
+    const ProgramResult again =
+        run_ranks(2, "render scene.toml -o out.exr --resume --time 0.001 --json state.json");
+    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    EXPECT_GT(json("state.json").at("resumed_spp").get<int>(), 0);
+}
+
+} // namespace reradiant
