@@ -2,12 +2,12 @@
 
 #include "host/atomic_file.h"
 #include "host/error.h"
+#include "host/regular_file.h"
 #include "host/report/json_file.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 namespace reradiant {
@@ -111,7 +111,7 @@ void keep_method(const fs::path& folder, const std::string& identity, const Meth
 
 std::optional<MethodResult> kept_method(const fs::path& folder, const std::string& identity,
                                         const RenderMethod& method) {
-    std::ifstream stream(method_file(folder, method, ".json"));
+    std::ifstream stream = open_regular_file(method_file(folder, method, ".json"));
     const Json json = Json::parse(stream, nullptr, false);
     try {
         if (!json.is_object() || json.at("identity") != identity)
