@@ -10,6 +10,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 namespace reradiant {
 
@@ -80,6 +83,19 @@ cl::Program compile(const Device& device, const std::string& file, const std::st
     return program;
 }
 
+/// From the cache on disk, or compiled; says which.
+std::pair<LoadedPrograms::Entry, bool> load_or_compile(const Device& device,
+                                                       const std::string& file,
+                                                       const std::string& source,
+                                                       const std::string& key) {
+    const std::string binary = read_cached_program(cached_program_file(key));
+    cl::Program program;
+    if (!binary.empty() && load_binary(device, binary, program))
+        return {{program, binary.size()}, true};
+    program = compile(device, file, source);
+    return {{program, keep(program, cached_program_file(key))}, false};
+}
+
 /// `source` is complete; `file` is what it is called.
 cl::Program build_source(const Device& device, const std::string& file, const std::string& source,
                          BuildStatistics* statistics) {
@@ -88,22 +104,20 @@ cl::Program build_source(const Device& device, const std::string& file, const st
     const std::string key =
         text_digest(fmt::format("{}\n{}\n{}\n{}\n{}\n{}", source, build_options, info.name,
                                 info.platform, info.driver, info.version));
-    const std::string binary = read_cached_program(cached_program_file(key));
-    std::size_t binary_bytes = binary.size();
-    cl::Program program;
-    const bool cached = !binary.empty() && load_binary(device, binary, program);
-    if (!cached) {
-        program = compile(device, file, source);
-        binary_bytes = keep(program, cached_program_file(key));
+    std::optional<LoadedPrograms::Entry> entry = device.programs().find(key);
+    bool cached = entry.has_value();
+    if (!entry) {
+        std::tie(entry, cached) = load_or_compile(device, file, source, key);
+        device.programs().add(key, *entry);
     }
     if (statistics) {
         ++(cached ? statistics->from_cache : statistics->built);
         statistics->source_bytes += source.size();
-        statistics->binary_bytes += binary_bytes;
+        statistics->binary_bytes += entry->binary_bytes;
         statistics->seconds +=
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
-    return program;
+    return entry->program;
 }
 
 } // namespace
