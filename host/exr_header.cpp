@@ -44,6 +44,37 @@ constexpr std::array<Packing, 10> packings{{{1, 2200},
                                             {32, 70000},
                                             {256, 70000}}};
 
+/// OpenEXR reads as many bytes as a type has, whatever size the file gives: with another size it
+/// would find the next attribute elsewhere.
+struct FixedSize {
+    std::string_view type;
+    std::uint32_t bytes;
+};
+constexpr FixedSize fixed_sizes[] = {{"box2f", 16},
+                                     {"box2i", 16},
+                                     {"chromaticities", 32},
+                                     {"compression", 1},
+                                     {"deepImageState", 1},
+                                     {"double", 8},
+                                     {"envmap", 1},
+                                     {"float", 4},
+                                     {"int", 4},
+                                     {"keycode", 28},
+                                     {"lineOrder", 1},
+                                     {"m33d", 72},
+                                     {"m33f", 36},
+                                     {"m44d", 128},
+                                     {"m44f", 64},
+                                     {"rational", 8},
+                                     {"tiledesc", 9},
+                                     {"timecode", 8},
+                                     {"v2d", 16},
+                                     {"v2f", 8},
+                                     {"v2i", 8},
+                                     {"v3d", 24},
+                                     {"v3f", 12},
+                                     {"v3i", 12}};
+
 std::uint32_t number_in(std::string_view bytes, std::size_t at) {
     std::uint32_t value = 0;
     for (std::size_t k = 4; k-- > 0;)
@@ -52,17 +83,48 @@ std::uint32_t number_in(std::string_view bytes, std::size_t at) {
     return value;
 }
 
-/// Bytes of a pixel: of every channel name, 0, type (1 is half), 12 bytes more.
-double bytes_of_channels(std::string_view list) {
-    double bytes = 0.0;
-    for (std::size_t at = 0; at < list.size() && list[at] != '\0';) {
+struct ChannelList {
+    double pixel_bytes = 0.0; ///< of all channels together
+    bool is_whole = false;    ///< ends with an empty name, where the attribute ends
+};
+/// Of every channel name, 0, type (1 is half), 12 bytes more.
+ChannelList channels_in(std::string_view list) {
+    ChannelList channels;
+    for (std::size_t at = 0; at < list.size();) {
+        if (list[at] == '\0') {
+            channels.is_whole = at + 1 == list.size();
+            break;
+        }
         const std::size_t end = list.find('\0', at);
-        if (end == std::string_view::npos)
-            break; // OpenEXR says what is wrong with it
-        bytes += number_in(list, end + 1) == 1 ? 2.0 : 4.0;
+        if (end == std::string_view::npos || end - at > longest_name)
+            break;
+        channels.pixel_bytes += number_in(list, end + 1) == 1 ? 2.0 : 4.0;
         at = end + 17;
     }
-    return bytes;
+    return channels;
+}
+
+/// Texts, each behind its length.
+bool is_whole_text_list(std::string_view list) {
+    std::size_t at = 0;
+    while (at < list.size())
+        at += 4 + std::size_t{number_in(list, at)};
+    return at == list.size();
+}
+
+/// Whether a value is as long as its type reads.
+bool is_whole(std::string_view type, std::string_view value) {
+    for (const FixedSize& fixed : fixed_sizes)
+        if (type == fixed.type)
+            return value.size() == fixed.bytes;
+    if (type == "chlist")
+        return channels_in(value).is_whole;
+    if (type == "stringvector")
+        return is_whole_text_list(value);
+    if (type == "preview") // width, height, 4 bytes a pixel
+        return value.size() >= 8 && 4.0 * number_in(value, 0) * number_in(value, 4) + 8.0 ==
+                                        static_cast<double>(value.size());
+    return true;
 }
 
 /// What a header says about its part's size.
@@ -72,7 +134,7 @@ struct PartSize {
 
     void take(const std::string& name, std::string_view value) {
         if (name == "channels")
-            pixel_bytes = bytes_of_channels(value);
+            pixel_bytes = channels_in(value).pixel_bytes;
         if (name == "compression" && !value.empty())
             packing = packings[std::min<std::size_t>(static_cast<unsigned char>(value[0]),
                                                      packings.size() - 1)];
@@ -125,8 +187,11 @@ private:
         PartSize part;
         for (std::string name = text(); !name.empty(); name = text()) {
             empty = false;
-            text(); // the type
-            part.take(name, value(name));
+            const std::string type = text(), held = value(name);
+            if (!is_whole(type, held))
+                refuse(fmt::format("the attribute {} has {} bytes, which is no {}", name,
+                                   held.size(), type));
+            part.take(name, held);
         }
         const double most = part.packing.most_ratio * static_cast<double>(size_) + 65536.0;
         if (part.bytes() > most)
