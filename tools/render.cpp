@@ -172,7 +172,8 @@ int run_render(RenderCommand command, const CommandContext& context) {
     write_results(command, common, result);
     if (!common.json.empty()) {
         auto json = render_statistics(result, device, command.model);
-        json["ranks"] = team ? team->size() : 1;
+        if (team)
+            json["ranks"] = team->size();
         write_json(common.json, json);
     }
     if (!common.quiet)
