@@ -46,18 +46,19 @@ float film_luminance(const float16* value, __global const float* y_weights) {
 }
 
 /// sums: [pixel][FILM_ROWS][FILM_LANES]: sum, its compensation, alternating sum (even minus odd
-/// samples), sum of squares. statistics: [pixel][5]: sums of Y and of Y^2, their compensations,
-/// samples refused. bands: [phase][LANES], where a lane goes; weights: [phase][LANES][2], its
+/// samples), sum of squares. statistics: [pixel][6]: sums of Y and of Y^2, their compensations,
+/// samples refused, and (an integer) samples taken, of the strip that begins with `first_pixel`. bands: [phase][LANES], where a lane goes; weights: [phase][LANES][2], its
 /// weight there and in the band above.
 __kernel void film(__global float* sums, __global float* statistics, __global const float* radiance,
                    __global const PathState* paths, __global const int* bands,
                    __global const float* weights, __global const float* y_weights, uint first_pixel,
-                   uint first_sample, uint samples, uint pixel_count) {
+                   uint samples, uint pixel_count) {
     const uint pixel = (uint)get_global_id(0);
     if (pixel >= pixel_count)
         return;
-    __global float* base = sums + (size_t)(first_pixel + pixel) * (FILM_ROWS * FILM_LANES);
-    statistics += (size_t)(first_pixel + pixel) * 5u;
+    const size_t at = paths[(size_t)pixel * samples].pixel - first_pixel;
+    __global float* base = sums + at * (FILM_ROWS * FILM_LANES);
+    statistics += at * FILM_STATISTICS;
     float2 y_sum = vload2(0, statistics), y_compensation = vload2(1, statistics);
     for (uint s = 0u; s < samples; ++s) {
         const size_t path = (size_t)pixel * samples + s;
@@ -67,7 +68,7 @@ __kernel void film(__global float* sums, __global float* statistics, __global co
             statistics[4] += 1.0f;
             continue;
         }
-        const float sign = ((first_sample + s) & 1u) ? -1.0f : 1.0f;
+        const float sign = (paths[path].sample & 1u) ? -1.0f : 1.0f;
         for (uint c = 0u; c < FILM_CHUNKS; ++c) {
             const float16 sum = vload16(c, base);
             const float16 corrected = value[c] - vload16(c, base + FILM_LANES);
@@ -86,6 +87,7 @@ __kernel void film(__global float* sums, __global float* statistics, __global co
         y_compensation = (next - y_sum) - corrected;
         y_sum = next;
     }
+    ((__global uint*)statistics)[5] += samples;
     vstore2(y_sum, 0, statistics);
     vstore2(y_compensation, 1, statistics);
 }

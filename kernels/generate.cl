@@ -1,4 +1,6 @@
-// Stage 1: camera rays. One work-item a path; path = local pixel * samples + local sample.
+// Stage 1: camera rays. One work-item a path; path = local pixel * samples + local sample. The
+// batch's pixels follow each other from `first_pixel` on and go on with the same sample, or, where
+// they are `listed`, they are those of `pixels` from there on, each with its own.
 #include "kernels/camera.h"
 #include "kernels/features.h"
 #include "kernels/portable.h"
@@ -6,14 +8,17 @@
 #include "kernels/shared.h"
 #include "kernels/wavelength.h"
 
-__kernel void generate(__global RayRecord* rays, __global PathState* paths, CameraRecord camera,
+__kernel void generate(__global RayRecord* rays, __global PathState* paths,
+                       __global const PixelSamples* pixels, uint listed, CameraRecord camera,
                        uint first_pixel, uint first_sample, uint samples, uint path_count,
                        uint phases, uint sequence_blocks, uint seed) {
     const uint path = (uint)get_global_id(0);
     if (path >= path_count)
         return;
-    const uint pixel = first_pixel + path / samples;
-    const uint sample = first_sample + path % samples;
+    const uint place = first_pixel + path / samples;
+    const uint pixel = listed != 0u ? pixels[place].pixel : place;
+    const uint sample =
+        first_sample + path % samples + (listed != 0u ? pixels[place].first_sample : 0u);
     const Random4 u = path_numbers(pixel, sample, 0u, sequence_blocks, seed).first;
     const CameraRay camera_space = camera_ray(camera, (real)(pixel % camera.width) + u.b,
                                               (real)(pixel / camera.width) + u.c, u.a, u.d);

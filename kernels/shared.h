@@ -239,6 +239,16 @@ typedef struct {
 } WalkVertexRecord;
 ASSERT_SIZE(WalkVertexRecord, 16);
 
+/// A pixel and the number of its next sample.
+typedef struct {
+    shared_uint pixel;
+    shared_uint first_sample;
+} PixelSamples;
+ASSERT_SIZE(PixelSamples, 8);
+
+/// Numbers that the film keeps of a pixel besides its bands (film.cl).
+#define FILM_STATISTICS 6
+
 /// State of a path between stages.
 typedef struct {
     shared_uint pixel;

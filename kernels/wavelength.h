@@ -5,15 +5,17 @@
 
 #include "kernels/portable.h"
 #include "kernels/random.h"
+#include "kernels/sequence.h"
 
 KERNELS_BEGIN
 
-/// Phase of a sample. Samples 2k and 2k+1 share it, so that the two halves of a pixel's samples,
-/// whose difference estimates the error, see the same phases; the order starts anywhere.
-/// An odd stride visits every phase because `phases` is a power of two.
+/// Phase of a sample, `phases` a power of two up to 2^16: an Owen-scrambled radical inverse for the
+/// even samples and another for the odd ones. The difference of these two halves, which estimates
+/// the error, then knows of phases that were not seen yet.
 DEVICE_FUNCTION uint wavelength_phase(uint pixel, uint sample, uint phases, uint seed) {
-    const uint start = random_hash(pixel, seed);
-    return (start + (sample >> 1) * 5u) & (phases - 1u);
+    const uint order = random_hash(2u * pixel + (sample & 1u), seed);
+    const uint place = sequence_scrambled(sample >> 1, order); // the index is the reversed inverse
+    return ((place >> 16) * phases) >> 16;
 }
 
 KERNELS_END

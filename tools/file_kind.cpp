@@ -2,10 +2,10 @@
 
 #include "host/error.h"
 #include "host/film/exr_channels.h"
+#include "host/regular_file.h"
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -23,9 +23,8 @@ std::string lower_case_ending(const fs::path& file) {
 }
 
 std::ifstream open(const fs::path& file) {
-    std::error_code ignored;
-    std::ifstream stream(file);
-    if (!stream || !fs::is_regular_file(file, ignored))
+    std::ifstream stream = open_regular_file(file);
+    if (!stream)
         throw_input_error({file.string()}, "cannot be opened",
                           "give a file that exists and is readable");
     return stream;

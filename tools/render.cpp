@@ -60,6 +60,9 @@ void apply_texts(RenderCommand& command, const CommonOptions& common) {
         command.render.bands = parse_bands_option(command.bands);
     if (!command.sample_range.empty()) {
         const SampleRange range = parse_sample_range_option(command.sample_range);
+        if (command.render.adaptive)
+            throw_input_error({}, "--adaptive decides itself which samples it takes",
+                              "leave --sample-range or --adaptive away");
         command.render.first_sample = range.first;
         command.render.samples = range.end - range.first;
     } else if (!command.samples_given &&
@@ -169,7 +172,8 @@ int run_render(RenderCommand command, const CommandContext& context) {
     write_results(command, common, result);
     if (!common.json.empty()) {
         auto json = render_statistics(result, device, command.model);
-        json["ranks"] = team ? team->size() : 1;
+        if (team)
+            json["ranks"] = team->size();
         write_json(common.json, json);
     }
     if (!common.quiet)
@@ -208,6 +212,8 @@ void add_sampling_options(CLI::App& app, RenderCommand& command) {
     app.add_option("--bands", command.bands, "film bands in nm, FROM:TO:STEP");
     app.add_option("--variance", command.variance, "bands: variance per band, too")
         ->check(CLI::IsMember({"bands"}));
+    app.add_flag("--adaptive", command.render.adaptive,
+                 "more samples where the error is; --spp is then the mean over pixels");
     app.add_flag("--all-features", command.render.all_features, "specialise nothing");
     app.add_flag("--double", command.render.in_double,
                  "kernels in double precision, to see what single costs (sums over wavelengths and "

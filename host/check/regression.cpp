@@ -1,12 +1,12 @@
 #include "host/check/check.h"
 
 #include "host/error.h"
+#include "host/regular_file.h"
 #include "host/report/json_file.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 
 namespace reradiant {
 
@@ -32,7 +32,7 @@ std::vector<float> numbers_of(const nlohmann::json& list) {
 }
 
 nlohmann::json read_saved(const std::filesystem::path& file) {
-    std::ifstream stream(file);
+    std::ifstream stream = open_regular_file(file);
     if (!stream)
         throw_input_error({file.string()}, "cannot be opened",
                           "name a file that `reradiant check --save` wrote");

@@ -14,7 +14,7 @@ class DeviceStorage {
 public:
     DeviceStorage(const Device& device, std::size_t bytes)
         : shared_(device.info().shares_memory ? shared_memory(device.context(), bytes) : nullptr,
-                  Release{device.context()}),
+                  Release{device.context(), device.queue()}),
           buffer_(shared_ ? cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR,
                                        bytes, shared_.get())
                           : cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR,
@@ -27,7 +27,13 @@ public:
 private:
     struct Release {
         cl::Context context;
-        void operator()(void* memory) const { clSVMFree(context(), memory); }
+        cl::CommandQueue queue;
+        /// An error in the midst of a pass leaves kernels queued: buffers wait for them, this
+        /// memory would not.
+        void operator()(void* memory) const {
+            clFinish(queue());
+            clSVMFree(context(), memory);
+        }
     };
     /// Null when there is none: then a buffer of the driver's may still fit, or say what is wrong.
     static void* shared_memory(const cl::Context& context, std::size_t bytes) {

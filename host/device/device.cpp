@@ -145,6 +145,17 @@ std::vector<DeviceInfo> list_devices() {
     return infos;
 }
 
+std::optional<LoadedPrograms::Entry> LoadedPrograms::find(const std::string& key) const {
+    const std::lock_guard lock(mutex_);
+    const auto entry = entries_.find(key);
+    return entry == entries_.end() ? std::nullopt : std::optional(entry->second);
+}
+
+void LoadedPrograms::add(const std::string& key, const Entry& entry) {
+    const std::lock_guard lock(mutex_);
+    entries_.emplace(key, entry);
+}
+
 Device::Device(const std::string& name_or_index, bool may_share_memory) {
     opencl_checked("opening the device", [&] {
         FoundDevice found = choose(name_or_index);

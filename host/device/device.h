@@ -2,8 +2,13 @@
 
 #include <CL/opencl.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +31,23 @@ void prepare_opencl(int threads);
 /// Every OpenCL device of every platform. Empty when there is none.
 std::vector<DeviceInfo> list_devices();
 
+/// Programs of a device by the digest of all that they are built from: loading a program anew, even
+/// from a cache on disk, takes longer than rendering a small picture. May be used by several
+/// threads.
+class LoadedPrograms {
+public:
+    struct Entry {
+        cl::Program program;
+        std::size_t binary_bytes = 0;
+    };
+    std::optional<Entry> find(const std::string& key) const;
+    void add(const std::string& key, const Entry& entry);
+
+private:
+    mutable std::mutex mutex_;
+    std::map<std::string, Entry> entries_;
+};
+
 /// A device with one in-order queue that takes the time of what it runs.
 class Device {
 public:
@@ -38,12 +60,14 @@ public:
     const cl::Device& handle() const { return device_; }
     const cl::Context& context() const { return context_; }
     const cl::CommandQueue& queue() const { return queue_; }
+    LoadedPrograms& programs() const { return *programs_; }
 
 private:
     DeviceInfo info_;
     cl::Device device_;
     cl::Context context_;
     cl::CommandQueue queue_;
+    std::shared_ptr<LoadedPrograms> programs_ = std::make_shared<LoadedPrograms>();
 };
 
 /// Run-time Error when the device cannot allocate so much in one piece.

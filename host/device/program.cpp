@@ -1,6 +1,7 @@
 #include "host/device/program.h"
 
 #include "host/atomic_file.h"
+#include "host/device/program_cache.h"
 #include "host/error.h"
 #include "host/paths.h"
 
@@ -9,8 +10,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
-#include <iterator>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 namespace reradiant {
 
@@ -19,27 +21,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* build_options = "-cl-std=CL1.2 -Werror";
-constexpr std::string_view cache_magic = "reradiant-program-1\n";
-
-fs::path cache_file(const std::string& key) {
-    return cache_directory() / "programs" / (key + ".bin");
-}
-
-/// magic, digest of the rest, newline, binary
-std::string pack(const std::string& binary) {
-    return std::string(cache_magic) + text_digest(binary) + "\n" + binary;
-}
-
-/// Empty when there is no entry, or one that is damaged.
-std::string read_cached(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string content((std::istreambuf_iterator<char>(stream)), {});
-    const std::size_t head = cache_magic.size() + 17;
-    if (content.size() <= head || content.compare(0, cache_magic.size(), cache_magic) != 0)
-        return {};
-    std::string binary = content.substr(head);
-    return content.compare(cache_magic.size(), 16, text_digest(binary)) == 0 ? binary : "";
-}
 
 bool load_binary(const Device& device, const std::string& binary, cl::Program& program) {
     try {
@@ -54,6 +35,15 @@ bool load_binary(const Device& device, const std::string& binary, cl::Program& p
     }
 }
 
+/// A driver that fails may have no log either.
+std::string build_log(const Device& device, const cl::Program& program) {
+    try {
+        return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle());
+    } catch (const cl::Error& error) {
+        return "the driver has no log: " + opencl_error_name(error.err());
+    }
+}
+
 [[noreturn]] void report_failed_build(const Device& device, const cl::Program& program,
                                       const std::string& file, const std::string& source) {
     const fs::path dump = cache_directory() / ("failed-" + fs::path(file).filename().string());
@@ -65,7 +55,7 @@ bool load_binary(const Device& device, const std::string& binary, cl::Program& p
         where = fmt::format("its source could not be written: {}", error.what());
     }
     throw_runtime_error(fmt::format("{} does not build on '{}':\n{}", file, device.info().name,
-                                    program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle())),
+                                    build_log(device, program)),
                         where);
 }
 
@@ -75,8 +65,7 @@ std::size_t keep(const cl::Program& program, const fs::path& file) {
         const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
         if (binaries.empty() || binaries[0].empty())
             return 0;
-        fs::create_directories(file.parent_path());
-        write_text_atomically(file, pack(std::string(binaries[0].begin(), binaries[0].end())));
+        write_cached_program(file, std::string(binaries[0].begin(), binaries[0].end()));
         return binaries[0].size();
     } catch (const std::exception& error) {
         spdlog::debug("kernel not cached: {}", error.what()); // a cache is a convenience
@@ -94,6 +83,19 @@ cl::Program compile(const Device& device, const std::string& file, const std::st
     return program;
 }
 
+/// From the cache on disk, or compiled; says which.
+std::pair<LoadedPrograms::Entry, bool> load_or_compile(const Device& device,
+                                                       const std::string& file,
+                                                       const std::string& source,
+                                                       const std::string& key) {
+    const std::string binary = read_cached_program(cached_program_file(key));
+    cl::Program program;
+    if (!binary.empty() && load_binary(device, binary, program))
+        return {{program, binary.size()}, true};
+    program = compile(device, file, source);
+    return {{program, keep(program, cached_program_file(key))}, false};
+}
+
 /// `source` is complete; `file` is what it is called.
 cl::Program build_source(const Device& device, const std::string& file, const std::string& source,
                          BuildStatistics* statistics) {
@@ -102,28 +104,28 @@ cl::Program build_source(const Device& device, const std::string& file, const st
     const std::string key =
         text_digest(fmt::format("{}\n{}\n{}\n{}\n{}\n{}", source, build_options, info.name,
                                 info.platform, info.driver, info.version));
-    const std::string binary = read_cached(cache_file(key));
-    std::size_t binary_bytes = binary.size();
-    cl::Program program;
-    const bool cached = !binary.empty() && load_binary(device, binary, program);
-    if (!cached) {
-        program = compile(device, file, source);
-        binary_bytes = keep(program, cache_file(key));
+    std::optional<LoadedPrograms::Entry> entry = device.programs().find(key);
+    bool cached = entry.has_value();
+    if (!entry) {
+        std::tie(entry, cached) = load_or_compile(device, file, source, key);
+        device.programs().add(key, *entry);
     }
     if (statistics) {
         ++(cached ? statistics->from_cache : statistics->built);
         statistics->source_bytes += source.size();
-        statistics->binary_bytes += binary_bytes;
+        statistics->binary_bytes += entry->binary_bytes;
         statistics->seconds +=
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
-    return program;
+    return entry->program;
 }
 
 } // namespace
 
 cl::Program build_program(const Device& device, const std::string& file,
                           const KernelDefines& defines, BuildStatistics* statistics) {
+    if (statistics)
+        statistics->defines = defines;
     return build_source(device, file, kernel_source(data_directory(), file, defines), statistics);
 }
 

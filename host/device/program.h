@@ -14,13 +14,15 @@ struct BuildStatistics {
     int built = 0, from_cache = 0;
     double seconds = 0.0;
     std::size_t source_bytes = 0; ///< before the compiler leaves anything out
+    KernelDefines defines;        ///< of the last program
     std::size_t binary_bytes = 0; ///< of the programs as the driver keeps them
 };
 
-/// Builds a kernel file ("kernels/gather.cl") for a device, or takes it from the disk cache, whose
-/// key is the source, the defines, the device and the driver, and whose entries carry a checksum: a
-/// damaged entry is rebuilt, never loaded. A failed build throws a run-time Error with the
-/// compiler's log and leaves the whole source in the cache folder.
+/// Builds a kernel file ("kernels/gather.cl") for a device, or takes it from those that the
+/// device has loaded or from the disk cache, whose key is the source, the defines, the device and
+/// the driver, and whose entries carry a checksum: a damaged entry is rebuilt, never loaded. A
+/// failed build throws a run-time Error with the compiler's log and leaves the whole source in the
+/// cache folder.
 cl::Program build_program(const Device& device, const std::string& file,
                           const KernelDefines& defines, BuildStatistics* statistics = nullptr);
 

@@ -108,6 +108,9 @@ const char* add_path_to_config(const OCIO::Config& config, OCIO::GroupTransform&
 }
 
 DisplayProcessor config_processor(const std::string& name, const DisplayOptions& options) {
+    std::error_code ignored;
+    if (std::filesystem::exists(name, ignored) && !std::filesystem::is_regular_file(name, ignored))
+        throw_input_error({name}, "is no regular file", "give a configuration file");
     const auto config = OCIO::Config::CreateFromFile(name.c_str());
     const std::string display =
         options.display.empty() ? config->getDefaultDisplay() : options.display;

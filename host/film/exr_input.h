@@ -1,8 +1,8 @@
 #pragma once
 
 #include "host/error.h"
+#include "host/exr_limits.h"
 
-#include <ImfHeader.h>
 #include <ImfMultiPartInputFile.h>
 
 #include <fmt/format.h>
@@ -17,15 +17,11 @@ namespace reradiant {
 /// header already.
 template <typename Use>
 auto with_exr_input(const std::filesystem::path& file, const Use& use) {
-    constexpr int largest_side = 65536;
-    [[maybe_unused]] static const bool limits_set = [] {
-        Imf::Header::setMaxImageSize(largest_side, largest_side);
-        return true;
-    }();
     std::error_code ignored;
     if (::access(file.c_str(), R_OK) != 0 || !std::filesystem::is_regular_file(file, ignored))
         throw_input_error({file.string()}, "cannot be opened",
                           "give an EXR file that exists and is readable");
+    refuse_hostile_exr(file);
     try {
         constexpr bool reconstruct_offsets = false; // a table of zeros means an unfinished write
         Imf::MultiPartInputFile input(file.c_str(), 0, reconstruct_offsets);

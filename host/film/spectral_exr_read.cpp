@@ -67,20 +67,11 @@ void check_channel(const fs::path& file, const Imf::Header& header, const std::s
                "write one value for every pixel");
 }
 
-/// The size is known before any pixel: refuses what the file cannot hold, however well ZIP packs
-/// (at most 1032:1), and what this machine cannot.
+/// The size is known before any pixel: refuses what this machine cannot hold.
 void check_memory(const fs::path& file, const Imf::Header& header, std::size_t channels) {
     const Imath::Box2i window = header.dataWindow();
     const double bytes = static_cast<double>(width_of(window)) * height_of(window) *
                          static_cast<double>(channels) * sizeof(float);
-    const double held = static_cast<double>(fs::file_size(file));
-    const Imf::Compression packing = header.compression();
-    const bool bounded = packing <= Imf::ZIP_COMPRESSION;
-    if (bounded && bytes > 1100.0 * held + 65536.0)
-        refuse(file,
-               fmt::format("the header promises {:.0f} bytes of pixels, the file holds {:.0f}",
-                           bytes, held),
-               "it is truncated or damaged; render or copy it again");
     const double memory = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) *
                           static_cast<double>(::sysconf(_SC_PAGESIZE));
     if (bytes > 0.8 * memory)

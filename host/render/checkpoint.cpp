@@ -2,6 +2,7 @@
 
 #include "host/atomic_file.h"
 #include "host/error.h"
+#include "host/regular_file.h"
 #include "host/scene/sha256.h"
 
 #include <fmt/format.h>
@@ -77,7 +78,7 @@ std::string_view bytes_of(std::span<const float> values) {
 /// A file that is read piece by piece while its digest is made.
 class DigestedInput {
 public:
-    explicit DigestedInput(const fs::path& file) : file_(file), stream_(file, std::ios::binary) {
+    explicit DigestedInput(const fs::path& file) : file_(file), stream_(open_regular_file(file)) {
         std::error_code code;
         size_ = fs::file_size(file, code);
         if (!stream_ || code)

@@ -1,79 +1,18 @@
 #include "host/render/film_sums.h"
 
+#include "host/render/film_pixels.h"
 #include "host/render/film_variance.h"
 #include "host/spectral/colour.h"
 #include "kernels/features.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
 namespace reradiant {
 
 namespace {
-
-/// What one pixel holds, lanes added to bands, in double.
-struct PixelSums {
-    explicit PixelSums(int bands)
-        : sum(static_cast<std::size_t>(bands)), alternating(sum.size()), squares(sum.size()) {}
-
-    void read(const FilmStrip& strip, const FilmLayout& layout, std::size_t pixel) {
-        std::fill(sum.begin(), sum.end(), 0.0);
-        std::fill(alternating.begin(), alternating.end(), 0.0);
-        if (layout.band_variance)
-            std::fill(squares.begin(), squares.end(), 0.0);
-        const float* base = strip.sums.data() + pixel * layout.floats_per_pixel();
-        const auto lanes = static_cast<std::size_t>(layout.lanes);
-        for (std::size_t column = 0; column < layout.columns.size(); ++column) {
-            if (layout.columns[column].band < 0)
-                continue;
-            const auto b = static_cast<std::size_t>(layout.columns[column].band);
-            const double weight = layout.columns[column].weight;
-            // The compensation holds what the sum is too large by (kernels/film.cl).
-            sum[b] += weight * (static_cast<double>(base[column]) -
-                                static_cast<double>(base[lanes + column]));
-            alternating[b] += weight * static_cast<double>(base[2 * lanes + column]);
-            if (layout.band_variance)
-                squares[b] += static_cast<double>(base[3 * lanes + column]);
-        }
-    }
-
-    std::vector<double> sum, alternating, squares;
-};
-
-std::size_t chunks_of(std::size_t pixels) {
-    return (pixels + film_strip_unit - 1) / film_strip_unit;
-}
-
-/// Calls visit(first, end, chunk) for chunks of a strip's pixels, in parallel; `chunk` counts
-/// through the film.
-template <typename Visit>
-void for_each_chunk(const FilmStrip& strip, const Visit& visit) {
-    tbb::parallel_for(std::size_t{0}, chunks_of(strip.pixels()), [&](std::size_t chunk) {
-        const std::size_t first = chunk * film_strip_unit;
-        visit(first, std::min(strip.pixels(), first + film_strip_unit),
-              strip.first_pixel / film_strip_unit + chunk);
-    });
-}
-
-/// Calls visit(pixel of the strip, sums, chunk) for every pixel.
-template <typename Visit>
-void for_each_pixel(const FilmStrip& strip, const FilmLayout& layout, int bands,
-                    const Visit& visit) {
-    for_each_chunk(strip, [&](std::size_t first, std::size_t end, std::size_t chunk) {
-        PixelSums sums(bands);
-        for (std::size_t pixel = first; pixel < end; ++pixel) {
-            sums.read(strip, layout, pixel);
-            visit(pixel, sums, chunk);
-        }
-    });
-}
-
-double accepted(const FilmStrip& strip, std::size_t pixel, std::uint32_t samples) {
-    return samples - static_cast<double>(strip.statistics[pixel * film_statistics_per_pixel + 4]);
-}
 
 double variance_of_mean(double sum, double sum_of_squares, double n) {
     if (n < 2.0)
@@ -86,95 +25,6 @@ double luminance_variance(const FilmStrip& strip, std::size_t pixel, double n) {
     const float* y = strip.statistics.data() + pixel * film_statistics_per_pixel;
     return variance_of_mean(static_cast<double>(y[0]) - static_cast<double>(y[2]),
                             static_cast<double>(y[1]) - static_cast<double>(y[3]), n);
-}
-
-std::size_t pixels_of(FilmSums film) {
-    return film.back().first_pixel + film.back().pixels();
-}
-
-/// Mean over pixels and bands. Sums by chunk, added in order: the result does not depend on
-/// threads. Between passes this counts in the time of a render, so bands are not told apart.
-double mean_radiance(FilmSums film, const FilmLayout& layout, int bands, std::uint32_t samples) {
-    std::vector<float> weights(static_cast<std::size_t>(layout.lanes), 0.0f);
-    for (std::size_t c = 0; c < layout.columns.size(); ++c)
-        if (layout.columns[c].band >= 0)
-            weights[c] = static_cast<float>(layout.columns[c].weight);
-    const std::size_t pixels = pixels_of(film);
-    std::vector<double> parts(chunks_of(pixels), 0.0);
-    for (const FilmStrip& strip : film)
-        for_each_chunk(strip, [&](std::size_t first, std::size_t end, std::size_t chunk) {
-            for (std::size_t pixel = first; pixel < end; ++pixel) {
-                const float* sums = strip.sums.data() + pixel * layout.floats_per_pixel();
-                const double n = accepted(strip, pixel, samples);
-                // the compensation is below what matters to a mean
-                const float total = std::inner_product(weights.begin(), weights.end(), sums, 0.0f);
-                parts[chunk] += n > 0.0 ? static_cast<double>(total) / n : 0.0;
-            }
-        });
-    return std::accumulate(parts.begin(), parts.end(), 0.0) / (static_cast<double>(pixels) * bands);
-}
-
-/// Half the difference of the even and the odd samples' means in one band: its square has the
-/// variance of the mean as expectation.
-double half_difference(const PixelSums& sums, const FilmLayout& layout, std::size_t band, double n,
-                       std::uint32_t samples) {
-    // With an odd count the half of the first sample has one more.
-    const double one_more = samples % 2 == 1 ? sums.sum[band] / n : 0.0;
-    return (sums.alternating[band] + (layout.begins_odd ? one_more : -one_more)) / n;
-}
-
-/// d^2 / (value^2 + floor) of one pixel, added over its bands.
-double squared_error(const PixelSums& sums, const FilmLayout& layout, double n,
-                     std::uint32_t samples, double floor) {
-    double total = 0.0;
-    for (std::size_t b = 0; b < sums.sum.size() && n > 0.0; ++b) {
-        const double value = sums.sum[b] / n;
-        const double d = half_difference(sums, layout, b, n, samples);
-        if (value * value + floor > 0.0)
-            total += d * d / (value * value + floor);
-    }
-    return total;
-}
-
-/// The errors of pixels that are added in order, and how far neighbours differ.
-struct ErrorSums {
-    double sum = 0.0, squared_differences = 0.0, waiting = 0.0;
-    std::size_t pixels = 0;
-
-    void add(double error) {
-        if (pixels++ % 2 == 1)
-            squared_differences += (error - waiting) * (error - waiting);
-        waiting = error;
-        sum += error;
-    }
-};
-
-/// Pixels are independent but differ in their expected errors, so that the spread over the image
-/// says little about the noise of the mean. Neighbours are alike: half the squared difference of
-/// two is the variance of one, or somewhat more (collapsed strata; Cochran, Sampling Techniques,
-/// 5A.12). The error that the image has and the estimate of it are two such means that hardly
-/// correlate (sum and difference of the halves), hence twice the variance; their ratio is near an
-/// F distribution of equal degrees of freedom, which is symmetric in its logarithm.
-RelmseEstimate estimate_from(const std::vector<ErrorSums>& parts) {
-    constexpr double normal_quantile = 1.959964; // of 97.5 %
-    double sum = 0.0, variance = 0.0;
-    std::size_t pixels = 0, paired = 0;
-    for (const ErrorSums& part : parts) {
-        sum += part.sum;
-        variance += part.squared_differences;
-        pixels += part.pixels;
-        paired += part.pixels / 2 * 2;
-    }
-    RelmseEstimate estimate;
-    estimate.value = sum / static_cast<double>(pixels);
-    if (paired == 0)
-        return estimate;
-    variance *= static_cast<double>(pixels) / static_cast<double>(paired);
-    const double spread =
-        sum > 0.0 ? std::exp(normal_quantile * std::sqrt(2.0 * variance) / sum) : 1.0;
-    estimate.low = estimate.value / spread;
-    estimate.high = estimate.value * spread;
-    return estimate;
 }
 
 } // namespace
@@ -212,6 +62,10 @@ FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool forc
     return layout;
 }
 
+std::uint32_t FilmStrip::samples(std::size_t pixel) const {
+    return std::bit_cast<std::uint32_t>(statistics[pixel * film_statistics_per_pixel + 5]);
+}
+
 std::uint64_t FilmStrip::refused() const {
     double total = 0.0;
     for (std::size_t i = 4; i < statistics.size(); i += film_statistics_per_pixel)
@@ -220,8 +74,8 @@ std::uint64_t FilmStrip::refused() const {
 }
 
 FilmResolver::FilmResolver(const FilmLayout& layout, int width, int height,
-                           const WavelengthGrid& bands, std::uint32_t samples)
-    : layout_(layout), samples_(samples) {
+                           const WavelengthGrid& bands)
+    : layout_(layout) {
     image_.width = width;
     image_.height = height;
     image_.bands = bands;
@@ -248,10 +102,11 @@ void FilmResolver::add(const FilmStrip& strip) {
         strip, layout_, static_cast<int>(bands),
         [&](std::size_t at, const PixelSums& sums, std::size_t) {
             const std::size_t pixel = strip.first_pixel + at;
-            const double n = accepted(strip, at, samples_);
+            const double n = accepted(strip, at);
+            const std::uint32_t samples = strip.samples(at);
             double luminance = 0.0;
             for (std::size_t b = 0; b < bands; ++b) {
-                const double d = n > 0.0 ? half_difference(sums, layout_, b, n, samples_) : 0.0;
+                const double d = n > 0.0 ? half_difference(sums, layout_, b, n, samples) : 0.0;
                 luminance += y_weights_[b] * d;
                 image_.values[pixel * bands + b] =
                     static_cast<float>(n > 0.0 ? sums.sum[b] / n : 0.0);
@@ -274,22 +129,6 @@ SpectralImage FilmResolver::take() {
                         layout_.band_variance ? y_weights_.size() : 0);
     }
     return std::move(image_);
-}
-
-RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int bands,
-                                std::uint32_t samples) {
-    if (samples < 2)
-        return {};
-    const double mean = mean_radiance(film, layout, bands, samples);
-    const double floor = 0.01 * mean * mean;
-    std::vector<ErrorSums> parts(chunks_of(pixels_of(film)));
-    for (const FilmStrip& strip : film)
-        for_each_pixel(strip, layout, bands,
-                       [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
-                           const double n = accepted(strip, pixel, samples);
-                           parts[chunk].add(squared_error(sums, layout, n, samples, floor) / bands);
-                       });
-    return estimate_from(parts);
 }
 
 } // namespace reradiant

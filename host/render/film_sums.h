@@ -2,6 +2,7 @@
 
 #include "host/film/spectral_image.h"
 #include "host/render/wavelength_plan.h"
+#include "kernels/shared.h"
 
 #include <cstdint>
 #include <limits>
@@ -16,7 +17,7 @@ struct FilmLayout {
     bool scatter = false;
     bool band_variance = false;
     bool independent_samples = false;     ///< else halves say how much they vary (film_variance.h)
-    bool begins_odd = false;              ///< the first sample is of the odd half
+    bool begins_odd = false;              ///< the first sample has an odd number
     int lanes = 0;                        ///< padded columns of a row
     std::vector<std::int32_t> lane_bands; ///< [phase][padded lane]: column in scatter mode, or -1
     std::vector<float> lane_weights; ///< [phase][padded lane][2]: for its column, and for the next
@@ -27,7 +28,7 @@ struct FilmLayout {
     int rows() const { return band_variance ? 4 : 3; }
     std::size_t floats_per_pixel() const { return static_cast<std::size_t>(rows() * lanes); }
 };
-constexpr std::size_t film_statistics_per_pixel = 5;
+constexpr std::size_t film_statistics_per_pixel = FILM_STATISTICS;
 
 FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool force_scatter);
 
@@ -35,9 +36,10 @@ FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool forc
 struct FilmStrip {
     std::size_t first_pixel = 0;
     std::span<const float> sums;       ///< [pixel][row][column], see kernels/film.cl
-    std::span<const float> statistics; ///< [pixel][5]
+    std::span<const float> statistics; ///< [pixel][film_statistics_per_pixel]
 
     std::size_t pixels() const { return statistics.size() / film_statistics_per_pixel; }
+    std::uint32_t samples(std::size_t pixel) const; ///< that were taken of it
     std::uint64_t refused() const;
 };
 /// A film's strips in order. All but the last hold a multiple of `film_strip_unit` pixels.
@@ -48,9 +50,7 @@ constexpr std::size_t film_strip_unit = 1024;
 /// strip, so that a strip may go as soon as it was added.
 class FilmResolver {
 public:
-    /// `samples` were taken of every pixel.
-    FilmResolver(const FilmLayout& layout, int width, int height, const WavelengthGrid& bands,
-                 std::uint32_t samples);
+    FilmResolver(const FilmLayout& layout, int width, int height, const WavelengthGrid& bands);
     /// Strips come in order.
     void add(const FilmStrip& strip);
     /// The image, once all strips were added.
@@ -58,25 +58,10 @@ public:
 
 private:
     const FilmLayout& layout_;
-    std::uint32_t samples_;
     SpectralImage image_;
     /// Squared differences of the film's halves, per pixel, and per band where they are wanted.
     std::vector<float> halves_y_, halves_bands_;
     std::vector<double> y_weights_; ///< of bands
 };
-
-/// What a render can say about its own error without a reference.
-struct RelmseEstimate {
-    double value = std::numeric_limits<double>::infinity();
-    /// 95 % interval of the error that this very image has, not of its expectation.
-    double low = 0.0, high = std::numeric_limits<double>::infinity();
-};
-
-/// Estimated relMSE of the mean image against the truth, as `compare` defines it: the mean of
-/// d^2 / (ref^2 + 0.01 mean(ref)^2) with d from the difference of the even and the odd samples'
-/// halves, which has the variance of the mean. Nothing is known below two samples, and no interval
-/// below two pixels.
-RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int bands,
-                                std::uint32_t samples);
 
 } // namespace reradiant

@@ -55,6 +55,7 @@ SampleIdentity sampling_identity(const Scene& scene, const RenderOptions& option
             {"comb phase", options.wavelengths.centred ? "centre" : "random"},
             {"variance per band", options.band_variance ? "on" : "off"},
             {"specialisation", options.all_features ? "off" : "on"},
+            {"adaptive", options.adaptive ? "on" : "off"},
             {"precision", options.in_double ? "double" : "single"}};
 }
 

@@ -72,9 +72,11 @@ std::uint64_t predicted_render_bytes(const Scene& scene, const WavelengthPlan& p
     const std::uint64_t paths =
         options.batch_paths * (depth * vertex + models.path + lanes * 4 + sizeof(RayRecord) +
                                sizeof(HitRecord) + sizeof(PathState));
+    const std::uint64_t choosing =
+        options.adaptive ? pixels * (2 * sizeof(PixelSamples) + sizeof(float)) : 0;
     // The film goes as the image comes, but for observers of passes, who see an image beside it; a
     // checkpoint is read as a whole.
-    return film + image + (options.resume ? film : 0) + paths;
+    return film + image + (options.resume ? film : 0) + paths + choosing;
 }
 
 void check_render_memory(const Scene& scene, const WavelengthPlan& plan,

@@ -3,6 +3,7 @@
 #include "host/film/merge.h"
 #include "host/render/render_identity.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sys/resource.h>
 
@@ -19,6 +20,12 @@ std::uint64_t peak_memory_bytes() {
 /// Numbers that JSON has no name for become null.
 nlohmann::ordered_json finite_or_null(double value) {
     return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+/// Samples that were accepted of the pixel with the fewest and of that with the most.
+nlohmann::ordered_json sample_range(const SpectralImage& image) {
+    const auto [least, most] = std::ranges::minmax(image.sample_count);
+    return {static_cast<std::uint64_t>(least), static_cast<std::uint64_t>(most)};
 }
 
 } // namespace
@@ -51,6 +58,7 @@ nlohmann::ordered_json render_statistics(const RenderResult& result, const Devic
         {"rays", result.rays},
         {"paths_per_second", rendering > 0.0 ? static_cast<double>(result.paths) / rendering : 0.0},
         {"relmse", finite_or_null(result.relmse)},
+        {"spp_range", sample_range(result.image)},
         {"non_finite", result.non_finite},
         {"device", device.info().name},
         {"bands",
@@ -89,8 +97,9 @@ void describe_image(RenderResult& result, const Scene& scene, const Device& devi
     attributes["reradiant:seed"] = std::to_string(options.seed);
     attributes["reradiant:firstSample"] = std::to_string(options.first_sample);
     attributes["reradiant:samples"] = std::to_string(result.samples);
-    attributes[sample_ranges_attribute] =
-        sample_ranges_text({{options.first_sample, options.first_sample + result.samples}});
+    if (!options.adaptive) // else pixels hold different ranges, and nothing can be merged with it
+        attributes[sample_ranges_attribute] =
+            sample_ranges_text({{options.first_sample, options.first_sample + result.samples}});
     attributes[sampling_attribute] = identity_text(sampling_identity(scene, options));
     attributes[render_identity_attribute] =
         identity_digest(render_identity(scene, device, options));

@@ -29,6 +29,8 @@ struct RenderOptions {
     std::optional<WavelengthGrid> bands; ///< instead of the scene's
     WavelengthOptions wavelengths;
     bool band_variance = false;
+    bool adaptive = false; ///< more samples where the error is (host/render/adaptive.h); `samples`
+                           ///< is then the mean over pixels
     bool all_features = false;
     std::string also_on;    ///< one feature (RenderFeatures) that kernels get, needed or not
     bool in_double = false; ///< kernels compute in double what they do not keep, for comparison

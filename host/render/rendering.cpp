@@ -1,5 +1,6 @@
 #include "host/render/rendering.h"
 
+#include "host/render/error_estimate.h"
 #include "host/render/film_sums.h"
 #include "host/render/render_memory.h"
 
@@ -50,6 +51,7 @@ WavefrontSettings wavefront_settings(const Scene& scene, const RenderOptions& op
             options.batch_paths,
             options.threads,
             sequence_blocks(options),
+            options.adaptive,
             options.on_rays};
 }
 
@@ -61,9 +63,9 @@ FilmLayout film_of(const WavelengthPlan& plan, const SceneTables& tables,
     return layout;
 }
 
-FilmResolver film_resolver(const FilmLayout& layout, const Scene& scene, const WavelengthPlan& plan,
-                           const RenderProgress& state) {
-    return {layout, scene.film.width, scene.film.height, plan.film, state.samples};
+FilmResolver film_resolver(const FilmLayout& layout, const Scene& scene,
+                           const WavelengthPlan& plan) {
+    return {layout, scene.film.width, scene.film.height, plan.film};
 }
 
 /// Takes the film out of the wavefront; the image needs no memory on top of it.
@@ -127,16 +129,22 @@ double Rendering::seconds() const {
 
 void Rendering::estimate_error() {
     wavefront_.film().read([&](FilmSums film) {
-        const RelmseEstimate estimate =
-            estimated_relmse(film, layout_, result_.plan.film.count, state_.samples);
+        const RelmseEstimate estimate = estimated_relmse(film, layout_, result_.plan.film.count,
+                                                         options_.adaptive ? &errors_ : nullptr);
         state_.relmse = estimate.value;
         state_.relmse_low = estimate.low;
         state_.relmse_high = estimate.high;
     });
 }
 
+std::span<const float> Rendering::pixel_errors() {
+    if (errors_.empty()) // of a render that was resumed
+        estimate_error();
+    return errors_;
+}
+
 SpectralImage Rendering::image_so_far() const {
-    FilmResolver resolver = film_resolver(layout_, scene_, result_.plan, state_);
+    FilmResolver resolver = film_resolver(layout_, scene_, result_.plan);
     wavefront_.film().read([&](FilmSums film) {
         for (const FilmStrip& strip : film)
             resolver.add(strip);
@@ -168,7 +176,7 @@ RenderResult Rendering::finish() {
 }
 
 RenderResult Rendering::finish_with_image() {
-    finish_film(result_, wavefront_, film_resolver(layout_, scene_, result_.plan, state_));
+    finish_film(result_, wavefront_, film_resolver(layout_, scene_, result_.plan));
     if (!result_.interrupted)
         checkpoint_.remove();
     return finish();

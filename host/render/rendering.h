@@ -8,6 +8,8 @@
 
 #include <chrono>
 #include <functional>
+#include <span>
+#include <vector>
 
 namespace reradiant {
 
@@ -25,6 +27,9 @@ public:
     double seconds() const;
     Wavefront& wavefront() { return wavefront_; }
     const FilmLayout& layout() const { return layout_; }
+    const WavelengthPlan& plan() const { return result_.plan; }
+    /// What each pixel adds to the estimated error, of adaptive renders.
+    std::span<const float> pixel_errors();
 
     /// The film holds so many samples now. Estimates the error, shows the pass to the observer, and
     /// writes a checkpoint when it is time or when `goes_on`, which is asked last, says no.
@@ -52,6 +57,7 @@ private:
     FilmLayout layout_;
     CheckpointFile checkpoint_;
     RenderProgress state_;
+    std::vector<float> errors_; ///< of pixels, of adaptive renders; empty before the first estimate
     double seconds_before_ = 0.0, observing_seconds_ = 0.0;
 };
 

@@ -1,5 +1,6 @@
 #include "host/render/team_film.h"
 
+#include <bit>
 #include <vector>
 
 namespace reradiant {
@@ -11,7 +12,7 @@ namespace {
 struct PixelNumbers {
     std::size_t lanes, rows;
 
-    std::size_t doubles() const { return lanes * (rows - 1) + 3; }
+    std::size_t doubles() const { return lanes * (rows - 1) + 4; }
 
     void read(const float* sums, const float* statistics, double* numbers) const {
         const auto compensated = [](const float* from, std::size_t apart) {
@@ -24,6 +25,7 @@ struct PixelNumbers {
         *numbers++ = compensated(statistics, 2);
         *numbers++ = compensated(statistics + 1, 2);
         *numbers++ = static_cast<double>(statistics[4]);
+        *numbers = std::bit_cast<std::uint32_t>(statistics[5]);
     }
 
     void write(const double* numbers, float* sums, float* statistics) const {
@@ -37,7 +39,8 @@ struct PixelNumbers {
             sums[i] = static_cast<float>(*numbers++);
         compensated(*numbers++, statistics, 2);
         compensated(*numbers++, statistics + 1, 2);
-        statistics[4] = static_cast<float>(*numbers);
+        statistics[4] = static_cast<float>(*numbers++);
+        statistics[5] = std::bit_cast<float>(static_cast<std::uint32_t>(*numbers));
     }
 };
 

@@ -73,6 +73,11 @@ void add_counts(RenderResult& result, Team& team) {
 RenderResult render_together(const Scene& scene, const Device& device, const RenderOptions& options,
                              Team& team, const std::function<bool(const RenderProgress&)>& progress,
                              const RenderObserver& observe) {
+    if (options.adaptive)
+        throw_input_error({},
+                          "--adaptive decides after every pass which samples to take, which "
+                          "machines that share a render cannot",
+                          "leave --adaptive away, or render by one process");
     check_same_render(scene, device, options, team);
     Rendering rendering(scene, device, options);
     if (team.leads())

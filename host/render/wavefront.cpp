@@ -58,6 +58,7 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         live_ = {DeviceArray<std::uint32_t>{device, capacity_}, {device, capacity_}};
         goes_on_ = {device, capacity_};
         paths_ = {device, capacity_};
+        chosen_ = {device, settings.adaptive ? std::size_t{pixel_count_} : 0};
         vertices_ = {device, slots};
         const bool sampling = scene.features.area_lights || scene.features.delta_lights ||
                               scene.features.environment_image;
@@ -115,6 +116,32 @@ void Wavefront::render_pass(std::uint32_t first_sample, std::uint32_t samples) {
     });
 }
 
+void Wavefront::render_pass(std::span<const PixelSamples> pixels, std::uint32_t samples) {
+    opencl_checked("rendering", [&] {
+        {
+            const auto chosen = chosen_.map(CL_MAP_WRITE, 0, pixels.size());
+            std::copy(pixels.begin(), pixels.end(), chosen.span().begin());
+        }
+        const auto place_of = [&](std::uint32_t pixel) { // of the first that is not before it
+            return static_cast<std::uint32_t>(
+                std::ranges::lower_bound(pixels, pixel, {}, &PixelSamples::pixel) - pixels.begin());
+        };
+        for (std::uint32_t done = 0; done < samples;) {
+            const std::uint32_t together = std::min(samples - done, capacity_);
+            const std::uint32_t pixels_at_once = capacity_ / together;
+            for (const DeviceFilm::Strip& strip : film_.strips()) {
+                const std::uint32_t end = place_of(strip.first_pixel + strip.pixels);
+                for (std::uint32_t first = place_of(strip.first_pixel); first < end;
+                     first += pixels_at_once)
+                    trace_batch({&strip, first, std::min(pixels_at_once, end - first), done,
+                                 together, true});
+            }
+            done += together;
+        }
+        finish_kernels();
+    });
+}
+
 void Wavefront::trace_batch(const Batch& batch) {
     do
         trace_paths(batch);
@@ -156,7 +183,8 @@ bool Wavefront::walks_fit() {
 }
 
 void Wavefront::generate(const Batch& batch) {
-    generate_.bind(rays_.buffer(), paths_.buffer(), scene_.camera, batch.first_pixel,
+    generate_.bind(rays_.buffer(), paths_.buffer(), chosen_.buffer(),
+                   static_cast<std::uint32_t>(batch.chosen), scene_.camera, batch.first_pixel,
                    batch.first_sample, batch.samples, batch.paths(),
                    static_cast<std::uint32_t>(phases_), settings_.sequence_blocks, settings_.seed);
     launch(generate_, batch.paths(), statistics_.generate_seconds);
@@ -252,8 +280,7 @@ void Wavefront::gather(const Batch& batch) {
 void Wavefront::add_to_film(const Batch& batch) {
     film_kernel_.bind(batch.strip->sums.buffer(), batch.strip->statistics.buffer(),
                       radiance_.buffer(), paths_.buffer(), film_bands_.buffer(),
-                      film_weights_.buffer(), y_weights_.buffer(),
-                      batch.first_pixel - batch.strip->first_pixel, batch.first_sample,
+                      film_weights_.buffer(), y_weights_.buffer(), batch.strip->first_pixel,
                       batch.samples, batch.pixels);
     launch(film_kernel_, batch.pixels, statistics_.film_seconds);
 }
@@ -278,9 +305,9 @@ std::size_t Wavefront::device_bytes() const {
            walk_parts_.bytes() + walk_chunks_.bytes() + walk_vertices_.bytes() + textures_.bytes() +
            hero_lanes_.bytes() + hero_weights_.bytes() + colours_.bytes() + lights_.bytes() +
            tables_.bytes() + rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() +
-           2 * live_[0].bytes() + goes_on_.bytes() + paths_.bytes() + vertices_.bytes() +
-           lobe_weights_.bytes() + radiance_.bytes() + film_.bytes() + film_bands_.bytes() +
-           film_weights_.bytes() + y_weights_.bytes();
+           2 * live_[0].bytes() + goes_on_.bytes() + paths_.bytes() + chosen_.bytes() +
+           vertices_.bytes() + lobe_weights_.bytes() + radiance_.bytes() + film_.bytes() +
+           film_bands_.bytes() + film_weights_.bytes() + y_weights_.bytes();
 }
 
 } // namespace reradiant

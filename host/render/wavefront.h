@@ -39,6 +39,7 @@ struct WavefrontSettings {
     std::size_t batch_paths = 1u << 15;
     int threads = 0;
     std::uint32_t sequence_blocks = 0; ///< of a path that come from the sequence (sequence.h)
+    bool adaptive = false;             ///< passes of chosen pixels will come
     RaySink on_rays = {};
 };
 
@@ -51,6 +52,8 @@ public:
 
     /// Adds samples [first_sample, first_sample + samples) of every pixel to the film.
     void render_pass(std::uint32_t first_sample, std::uint32_t samples);
+    /// Adds so many samples of chosen pixels, which ascend. Needs WavefrontSettings::adaptive.
+    void render_pass(std::span<const PixelSamples> pixels, std::uint32_t samples);
 
     DeviceFilm& film() { return film_; }
     const DeviceFilm& film() const { return film_; }
@@ -60,7 +63,9 @@ public:
 private:
     struct Batch {
         const DeviceFilm::Strip* strip;
+        /// The first pixel, or its place in `chosen_`; the first sample, or what is added to it.
         std::uint32_t first_pixel, pixels, first_sample, samples;
+        bool chosen = false;
         std::uint32_t paths() const { return pixels * samples; }
     };
 
@@ -112,6 +117,7 @@ private:
     std::array<std::uint32_t, 2> live_count_{};
     DeviceArray<std::uint8_t> goes_on_; ///< of the live ones, whether they reach the next
     DeviceArray<PathState> paths_;
+    DeviceArray<PixelSamples> chosen_; ///< the pass's pixels, where those are not all
     DeviceArray<VertexRecord> vertices_;
     DeviceArray<float> lobe_weights_, radiance_;
     DeviceFilm film_;

@@ -1,3 +1,4 @@
+#include "host/exr_limits.h"
 #include "host/scene/image_io.h"
 
 #include <ImfChannelList.h>
@@ -62,6 +63,7 @@ Image read_exr(Imf::InputFile& input, const std::filesystem::path& file) {
 } // namespace
 
 Image read_exr_image(const std::filesystem::path& file) {
+    refuse_hostile_exr(file);
     try {
         Imf::InputFile input(file.c_str());
         return read_exr(input, file);

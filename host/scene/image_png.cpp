@@ -17,6 +17,7 @@ constexpr std::size_t BYTES_PER_PIXEL = 6; // 16 bit RGB, big endian
 struct Reader {
     png_structp png = nullptr;
     png_infop info = nullptr;
+    std::size_t packed_row_bytes = 0; ///< as the file has them
     std::string message;
 
     ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
@@ -35,6 +36,7 @@ bool read_header(Reader& reader, std::FILE* stream) {
         return false;
     png_init_io(reader.png, stream);
     png_read_info(reader.png, reader.info);
+    reader.packed_row_bytes = png_get_rowbytes(reader.png, reader.info);
     png_set_expand_16(reader.png);
     png_set_gray_to_rgb(reader.png);
     png_set_strip_alpha(reader.png);
@@ -91,6 +93,11 @@ Image read_png_image(const std::filesystem::path& file, ImageEncoding encoding) 
     const std::size_t width = png_get_image_width(reader.png, reader.info);
     const std::size_t height = png_get_image_height(reader.png, reader.info);
     check_image_size(file, width, height);
+    constexpr std::size_t largest_zlib_ratio = 1032;
+    if (reader.packed_row_bytes * height / largest_zlib_ratio > std::filesystem::file_size(file)) {
+        reader.message = "its header promises more than it holds";
+        refuse();
+    }
     std::vector<unsigned char> bytes(width * height * BYTES_PER_PIXEL);
     std::vector<png_bytep> rows(height);
     for (std::size_t y = 0; y < height; ++y)

@@ -95,14 +95,24 @@ toml::table diffuse(const MitsubaObject& bsdf, const char* property, MitsubaScen
     return toml::table{{"substrate", std::move(substrate)}};
 }
 
+/// take_linear_plastic; a reflectance that the scene's own reader would refuse later is refused
+/// here.
+bool has_linear_base(const MitsubaObject& bsdf, toml::table& material, const toml::table& layer) {
+    try {
+        return take_linear_plastic(*material["substrate"].as_table(), layer);
+    } catch (const std::invalid_argument& error) {
+        bsdf.document().fail(bsdf.element(), fmt::format("diffuse_reflectance: {}", error.what()),
+                             "give a reflectance, 0 to 1");
+    }
+}
+
 toml::table plastic(const MitsubaObject& bsdf, bool rough, MitsubaScene& scene) {
     toml::table material = diffuse(bsdf, "diffuse_reflectance", scene);
     require_one(bsdf, "specular_reflectance");
     toml::table layer{{"ior", relative_ior(bsdf, "polypropylene")}};
     if (rough)
         insert_roughness(layer, bsdf);
-    if (!bsdf.flag_or("nonlinear", false) &&
-        !take_linear_plastic(*material["substrate"].as_table(), layer))
+    if (!bsdf.flag_or("nonlinear", false) && !has_linear_base(bsdf, material, layer))
         spdlog::warn("{}: the {} is rendered as with nonlinear = true: this program counts every "
                      "reflection between coat and base with the base's reflectance",
                      bsdf.document().position(bsdf.element()).text(), bsdf.title());

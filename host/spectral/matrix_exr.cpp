@@ -1,4 +1,5 @@
 #include "host/atomic_file.h"
+#include "host/exr_limits.h"
 #include "host/spectral/matrix_formats.h"
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/text_reader.h"
@@ -224,6 +225,7 @@ ReradiationMatrix read_matrix_exr(const std::filesystem::path& file) {
     std::error_code code;
     if (!std::filesystem::is_regular_file(file, code))
         throw_input_error(position, "cannot be read", "name an existing file");
+    refuse_hostile_exr(file);
     try {
         Imf::InputFile input(file.c_str());
         const ReradiationMatrix matrix = matrix_of(input, position);

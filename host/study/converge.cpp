@@ -28,6 +28,7 @@ RenderOptions method_options(const ConvergeOptions& options, const RenderMethod&
     render.model = method.model;
     render.wavelengths.comb_count = method.comb_count;
     render.wavelengths.hero_count = method.hero_count;
+    render.adaptive = method.adaptive;
     render.samples = unlimited_samples;
     render.time_seconds = options.time_seconds;
     render.seed = seed;

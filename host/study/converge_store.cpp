@@ -2,12 +2,12 @@
 
 #include "host/atomic_file.h"
 #include "host/error.h"
+#include "host/regular_file.h"
 #include "host/report/json_file.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 namespace reradiant {
@@ -92,13 +92,10 @@ RelmseEstimate estimate_from_json(const Json& json) {
 }
 
 Json curve_json(const ErrorCurve& curve) {
-    Json json = {{"method", curve.method.name},
-                 {"model", model_name(curve.method.model)},
-                 {"comb", curve.method.comb_count},
-                 {"hero", curve.method.hero_count},
-                 {"setup_seconds", curve.setup_seconds},
-                 {"build_seconds", curve.build_seconds},
-                 {"rows", Json::array()}};
+    Json json = {{"method", curve.method.name},          {"model", model_name(curve.method.model)},
+                 {"comb", curve.method.comb_count},      {"hero", curve.method.hero_count},
+                 {"adaptive", curve.method.adaptive},    {"setup_seconds", curve.setup_seconds},
+                 {"build_seconds", curve.build_seconds}, {"rows", Json::array()}};
     for (const CurveRow& row : curve.rows)
         json["rows"].push_back(row_json(row));
     return json;
@@ -142,7 +139,7 @@ std::vector<CurveRow> kept_rows(const fs::path& folder, const std::string& ident
 
 std::optional<MethodResult> kept_method(const fs::path& folder, const std::string& identity,
                                         const RenderMethod& method) {
-    std::ifstream stream(method_file(folder, method, ".json"));
+    std::ifstream stream = open_regular_file(method_file(folder, method, ".json"));
     const Json json = Json::parse(stream, nullptr, false);
     try {
         if (!json.is_object() || json.at("identity") != identity)

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/film/spectral_image.h"
-#include "host/render/film_sums.h"
+#include "host/render/error_estimate.h"
 #include "host/study/render_method.h"
 
 #include <cstdint>

@@ -16,7 +16,9 @@ namespace {
 constexpr int most_comb_wavelengths = 4096;
 constexpr const char* remedy =
     "a method is a model (auto, adding, weidlich-wilkie, walk), a wavelength sampling (comb or "
-    "comb:N with N from 1 to 4096, hero or hero:N with N from 1 to 16), or both as MODEL+comb:N";
+    "comb:N with N from 1 to 4096, hero or hero:N with N from 1 to 16), adaptive, or several "
+    "joined by a plus, as in "
+    "MODEL+comb:N";
 
 std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts;
@@ -69,6 +71,12 @@ RenderMethod parse_method(const std::string& text) {
     RenderMethod method{text};
     bool has_model = false, has_sampling = false;
     for (const std::string& part : split(text, '+')) {
+        if (part == "adaptive") {
+            if (method.adaptive)
+                refuse(text, "says adaptive twice");
+            method.adaptive = true;
+            continue;
+        }
         const bool comb = is_sampling(part, "comb"), hero = is_sampling(part, "hero");
         if (comb)
             method.comb_count = wavelength_count(text, part, "comb", 0, most_comb_wavelengths);

@@ -186,6 +186,7 @@ private:
         render.model = study_.rendering->method.model;
         render.wavelengths.comb_count = study_.rendering->method.comb_count;
         render.wavelengths.hero_count = study_.rendering->method.hero_count;
+        render.adaptive = study_.rendering->method.adaptive;
         render.checkpoint = cell_checkpoint(cell);
         render.resume = true;
         render.restart_if_other = !options_.resume;

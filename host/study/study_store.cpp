@@ -3,6 +3,7 @@
 #include "host/atomic_file.h"
 #include "host/error.h"
 #include "host/film/colour_image.h"
+#include "host/regular_file.h"
 #include "host/report/json_file.h"
 #include "host/report/polar_plot.h"
 #include "host/report/svg.h"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <set>
 
@@ -202,7 +202,7 @@ void keep_cell(const CellResult& cell, const std::string& identity) {
 }
 
 bool restore_cell(CellResult& cell, const std::string& identity) {
-    std::ifstream stream(cell.folder / "cell.json");
+    std::ifstream stream = open_regular_file(cell.folder / "cell.json");
     const Json json = Json::parse(stream, nullptr, false);
     CellResult restored = cell;
     try {

@@ -36,7 +36,8 @@ protected:
     }
     BuildStatistics build() {
         BuildStatistics statistics;
-        build_program(device(), "kernels/generate.cl", {{"FEATURE_LENS", 0}}, &statistics);
+        const Device anew(""); // which has loaded nothing
+        build_program(anew, "kernels/generate.cl", {{"FEATURE_LENS", 0}}, &statistics);
         return statistics;
     }
     fs::path only_entry() {
@@ -50,6 +51,17 @@ protected:
 TEST_F(ProgramCache, SecondBuildComesFromTheCache) {
     EXPECT_EQ(build().built, 1);
     EXPECT_EQ(build().from_cache, 1);
+}
+
+TEST_F(ProgramCache, DeviceLoadsAProgramOnce) {
+    const Device opened("");
+    const auto build_there = [&] {
+        return build_program(opened, "kernels/generate.cl", {{"FEATURE_LENS", 0}})();
+    };
+    const cl_program first = build_there();
+    fs::remove_all(folder_);
+    EXPECT_EQ(build_there(), first);
+    EXPECT_FALSE(fs::exists(folder_)) << "nothing was looked for on disk";
 }
 
 TEST_F(ProgramCache, Case41DamagedEntryIsRebuiltNeverLoaded) {

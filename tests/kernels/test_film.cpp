@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-constexpr std::size_t lanes = 16, rows = 3, statistics_count = 5;
+constexpr std::size_t lanes = 16, rows = 3, statistics_count = FILM_STATISTICS;
 
 /// One pixel of 16 lanes to which radiances are added, all lanes of a path alike but one.
 class OnePixel {
@@ -40,7 +40,7 @@ public:
         const DeviceArray<float> weights(device(), std::span<const float>(ones));
         Kernel kernel(program_, "film", 8);
         kernel.bind(sums.buffer(), statistics.buffer(), in.buffer(), path.buffer(), bands.buffer(),
-                    weights.buffer(), weights.buffer(), cl_uint{0}, cl_uint{0},
+                    weights.buffer(), weights.buffer(), cl_uint{0},
                     static_cast<cl_uint>(paths), cl_uint{1});
         kernel.launch(device(), 1);
         const auto mapped = sums.map(CL_MAP_READ, 0, rows * lanes);

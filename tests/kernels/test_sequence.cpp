@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <set>
+#include <vector>
 
 namespace reradiant {
 namespace {
@@ -85,6 +86,36 @@ TEST(KernelSequence, DifferentNumbersAreIndependentOverPixels) {
             chi += (cell - count / 256.0) * (cell - count / 256.0) / (count / 256.0);
         EXPECT_LT(chi, 255 + 4.75 * std::sqrt(510.0) + 12) << "pair " << p;
     }
+}
+
+/// The numbers of ten bounces, each against each other over a pixel's samples: no period shows as
+/// full and empty bins. Under nested scrambling the product of bit l of two numbers is the same for
+/// 2^(l+1) samples, so chi-square is a sum of 64, 16, 4 and 1 squares of weight 2, 4, 8 and 16: its
+/// mean is 240, and 1166 is passed with a probability below 3160 e^-20 (Laurent and Massart 2000,
+/// lemma 1, x = 20). Numbers that repeat have a million.
+TEST(KernelSequence, Case34TenBouncesOf65536SamplesLeaveNoPeriodicBins) {
+    constexpr std::uint32_t samples = 1u << 16, bounces = 10;
+    constexpr std::size_t dimensions = 8 * bounces;
+    std::vector<std::array<std::uint8_t, dimensions>> bins(samples);
+    for (std::uint32_t sample = 0; sample < samples; ++sample)
+        for (std::uint32_t bounce = 0; bounce < bounces; ++bounce) {
+            const kernels::RandomBlocks u =
+                kernels::path_numbers(77u, sample, 2u * bounce, 2u * bounces, 5u);
+            const std::array numbers = {u.first.a,  u.first.b,  u.first.c,  u.first.d,
+                                        u.second.a, u.second.b, u.second.c, u.second.d};
+            for (std::size_t k = 0; k < 8; ++k)
+                bins[sample][8 * bounce + k] = static_cast<std::uint8_t>(numbers[k] * 16);
+        }
+    for (std::size_t x = 0; x < dimensions; ++x)
+        for (std::size_t y = 0; y < x; ++y) {
+            std::array<int, 256> counts{};
+            for (const auto& sample : bins)
+                ++counts[sample[x] * 16u + sample[y]];
+            double chi = 0.0;
+            for (const int count : counts)
+                chi += (count - samples / 256.0) * (count - samples / 256.0) / (samples / 256.0);
+            EXPECT_LT(chi, 1166) << "numbers " << x << " and " << y;
+        }
 }
 
 /// Means of a smooth function over a pixel's samples come close to its integral far faster than

@@ -10,10 +10,9 @@ namespace reradiant::test {
 /// Materials with every number in its range or at an edge of it; the same seed gives the same.
 class RandomMaterials {
 public:
-    /// Rough interfaces take some seconds of tables for every new IOR and roughness:
-    /// `many_interfaces` draws them from a range, else they are of a few kinds.
-    RandomMaterials(unsigned seed, bool many_interfaces)
-        : engine_(seed), many_interfaces_(many_interfaces) {}
+    /// Rough interfaces take some seconds of tables for every new IOR and roughness: there are
+    /// `interfaces` of them, the first of which is GGX of 0.2 at 1.5.
+    RandomMaterials(unsigned seed, int interfaces) : engine_(seed), interfaces_(interfaces) {}
 
     Material material(int most_layers = 3) {
         Material result;
@@ -40,13 +39,18 @@ private:
         const bool is_rough = chance(0.3);
         Layer result = layer(edge_or_between({1.0, 1.000001, 1.0001, 1.5, 2.4, 4.0}), 0.0,
                              chance(0.5) ? 0.0 : edge_or_between({0.0, 1e-8, 1e-3, 1.0, 1e4}));
-        if (is_rough) {
-            result.ior = Spectrum::constant(many_interfaces_ ? uniform(1.1, 2.5) : 1.5);
-            result.alpha = many_interfaces_ ? uniform(0.02, 0.9) : 0.2;
-            const Distribution all[] = {Distribution::Ggx, Distribution::Beckmann};
-            result.distribution = all[many_interfaces_ ? integer(2) : 0];
-        }
+        if (is_rough)
+            make_rough(result, integer(interfaces_));
         return result;
+    }
+    static void make_rough(Layer& layer, int interface) {
+        std::mt19937_64 engine(static_cast<unsigned>(interface));
+        const auto between = [&](double from, double to) {
+            return std::uniform_real_distribution<double>(from, to)(engine);
+        };
+        layer.ior = Spectrum::constant(interface == 0 ? 1.5 : between(1.1, 2.5));
+        layer.alpha = interface == 0 ? 0.2 : between(0.02, 0.9);
+        layer.distribution = interface % 2 == 0 ? Distribution::Ggx : Distribution::Beckmann;
     }
     void substrate(Substrate& result) {
         result.reflectance = Spectrum::constant(edge_or_between({0.0, 1e-6, 0.5, 0.999999, 1.0}));
@@ -67,7 +71,7 @@ private:
     }
 
     std::mt19937_64 engine_;
-    bool many_interfaces_;
+    int interfaces_;
 };
 
 } // namespace reradiant::test

@@ -75,6 +75,19 @@ TEST(FilmSums, VariancePerBandPredictsTheSpreadBetweenRenders) {
     EXPECT_NEAR(spread, predicted, 0.1 * predicted);
 }
 
+TEST(FilmSums, EstimateKnowsWhichHalfHasOneSampleMore) {
+    const auto relmse = [](std::uint32_t first, std::uint32_t samples) {
+        RenderOptions options;
+        options.first_sample = first;
+        options.samples = samples;
+        options.bands = grid_from_range(400, 700, 50);
+        return render(noisy_scene(), device(), options).relmse;
+    };
+    const double even = relmse(0, 64);
+    EXPECT_NEAR(relmse(0, 63), even, 0.2 * even);
+    EXPECT_NEAR(relmse(1, 63), even, 0.2 * even);
+}
+
 TEST(FilmSums, MemoryLimitRefusesBeforeWorkStarts) {
     RenderOptions options;
     options.memory_limit_bytes = 1000;

@@ -128,7 +128,7 @@ void expect_sound(const SceneTables& tables, RandomMaterials& random) {
 }
 
 TEST(RandomMaterials, SampleAndPdfOnTheDeviceStaySound) {
-    RandomMaterials random(31, false);
+    RandomMaterials random(31, 1);
     const int count = is_full_run() ? 8000 : 150;
     expect_sound(random_tables(random, Model::WeidlichWilkie, count), random);
     expect_sound(random_tables(random, Model::Auto, count), random);

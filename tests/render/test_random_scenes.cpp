@@ -61,7 +61,7 @@ std::optional<RenderResult> rendered(const Scene& scene, const RenderOptions& op
 
 TEST(RandomScenes, HoldNoNanNoInfinityAndNothingNegative) {
     const int count = is_full_run() ? 500 : 40;
-    RandomMaterials random(17, is_full_run());
+    RandomMaterials random(17, is_full_run() ? 60 : 1);
     int done = 0;
     for (int i = 0; i < count; ++i) {
         const Scene scene = random_scene(random, random.material());
@@ -98,7 +98,7 @@ TEST(RandomScenes, WhiteFurnaceNeverShinesBrighterThanItsWalls) {
     // tables over angles (1e-3), Oren-Nayar's own excess (kernels/oren_nayar.h) and the noise of
     // sampling lobes, which the mean over 30 pixels of 64 samples has below 3 %.
     const int count = is_full_run() ? 300 : 12;
-    RandomMaterials random(23, is_full_run());
+    RandomMaterials random(23, is_full_run() ? 60 : 1);
     for (int i = 0; i < count; ++i) {
         Material material = random.material();
         material.substrate.matrix.reset();

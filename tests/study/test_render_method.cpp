@@ -27,6 +27,9 @@ TEST(RenderMethod, PartsAreReadInAnyOrder) {
     EXPECT_EQ(parse_method("hero").hero_count, 4);
     EXPECT_EQ(parse_method("weidlich-wilkie+hero:16").hero_count, 16);
     EXPECT_EQ(parse_methods("adding,walk,comb:8").size(), 3u);
+    EXPECT_FALSE(both.adaptive);
+    EXPECT_TRUE(parse_method("adaptive").adaptive);
+    EXPECT_TRUE(parse_method("walk+hero:8+adaptive").adaptive);
 }
 
 TEST(RenderMethod, WhatIsNotKnownIsNamed) {

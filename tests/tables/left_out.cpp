@@ -1,21 +1,25 @@
-// What specialising the kernels to a scene saves, as a Markdown table: every example scene with the
-// features that it needs, and with all of them and every wavelength sampled. Kernels are built anew
-// in an empty cache. Arguments: scene files; none: those of tools/examples. Exits with 3 when the
-// two images of a scene differ by more than three standard errors of their tile means (Sidak).
-// A second table has the price of every feature alone: the reference study, which needs few, with
-// one more at a time.
+// What specialising the kernels to a scene saves, as a Markdown table: every example scene as it
+// is, with all features, and with every wavelength sampled. Kernels are built anew in an empty
+// cache; seconds are ratios to the scene as it is, medians of alternating turns. Arguments: scene
+// files; none: those of tools/examples. Exits with 3 when two images of a scene differ by more than
+// three standard errors of their tile means (Sidak). A second table has the price of every feature
+// alone: the reference study, which needs few, with one more at a time.
 #include "host/device/device.h"
+#include "host/render/render_features.h"
 #include "host/render/renderer.h"
 #include "host/scene/scene.h"
 #include "tests/layers/walk_statistics.h"
+#include "tests/tables/built_kernels.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <unistd.h>
+#include <iterator>
+#include <map>
+#include <string>
+#include <vector>
 
 using namespace reradiant;
 
@@ -26,24 +30,7 @@ namespace fs = std::filesystem;
 constexpr int film_width = 128;
 constexpr std::uint32_t samples = 32;
 constexpr int tile = 16;
-
-/// An empty cache for kernels, one after the other; the interfaces' tables stay in the user's.
-class EmptyCache {
-public:
-    EmptyCache()
-        : folder_(fs::temp_directory_path() /
-                  ("reradiant-left-out-" + std::to_string(::getpid()))) {
-        fs::create_directories(folder_);
-        ::setenv("RERADIANT_CACHE", folder_.c_str(), 1);
-    }
-    ~EmptyCache() { fs::remove_all(folder_); }
-    void empty_programs() const { fs::remove_all(folder_ / "programs"); }
-    EmptyCache(const EmptyCache&) = delete;
-    EmptyCache& operator=(const EmptyCache&) = delete;
-
-private:
-    fs::path folder_;
-};
+constexpr int turns = 7;
 
 std::vector<fs::path> example_scenes() {
     const fs::path folder = fs::path(RERADIANT_SOURCE_DIR) / "tools" / "examples";
@@ -63,16 +50,27 @@ Scene small_scene(const fs::path& file) {
     return scene;
 }
 
-RenderResult rendered(const Scene& scene, const Device& device, bool all) {
+/// What a scene does not need and is rendered with all the same.
+enum class Extra { Nothing, Features, Wavelengths };
+
+RenderOptions with_extra(Extra extra) {
     RenderOptions options;
     options.samples = samples;
-    options.all_features = all;
-    options.wavelengths.keep_all = all;
-    return render(scene, device, options);
+    options.all_features = extra == Extra::Features;
+    options.wavelengths.keep_all = extra == Extra::Wavelengths;
+    return options;
 }
 
 double mebibytes(std::size_t bytes) {
     return static_cast<double>(bytes) / (1024.0 * 1024.0);
+}
+
+double kibibytes(std::size_t bytes) {
+    return static_cast<double>(bytes) / 1024.0;
+}
+
+double thousands(std::size_t count) {
+    return static_cast<double>(count) / 1000.0;
 }
 
 double rendering_seconds(const RenderResult& result) {
@@ -88,6 +86,8 @@ struct TileDistance {
 TileDistance tile_distance(const SpectralImage& a, const SpectralImage& b) {
     TileDistance distance;
     const int bands = a.bands.count;
+    const double brightest =
+        static_cast<double>(*std::max_element(a.values.begin(), a.values.end()));
     for (int ty = 0; ty + tile <= a.height; ty += tile)
         for (int tx = 0; tx + tile <= a.width; tx += tile)
             for (int band = 0; band < bands; ++band) {
@@ -102,8 +102,9 @@ TileDistance tile_distance(const SpectralImage& a, const SpectralImage& b) {
                     level += va;
                 }
                 constexpr double n = tile * tile;
-                // what only rounding tells apart has no spread to speak of
-                const double rounding = 1e-5 * level / n;
+                // what only rounding tells apart has no spread to speak of, and a factored matrix
+                // rounds in proportion to its largest entries
+                const double rounding = 1e-5 * level / n + 1e-9 * brightest;
                 const double error = std::sqrt(squares) / n + rounding;
                 ++distance.tiles;
                 if (error > 0.0)
@@ -120,99 +121,138 @@ std::string on_features(const RenderResult& result) {
     return names;
 }
 
-/// One scene's row; false when its images differ.
-bool print_scene(const fs::path& file, const Device& device, const EmptyCache& cache) {
-    const Scene scene = small_scene(file);
-    cache.empty_programs();
-    const RenderResult some = rendered(scene, device, false);
-    const RenderResult all = rendered(scene, device, true);
-    const TileDistance distance = tile_distance(some.image, all.image);
-    const bool same = distance.largest < sidak_bound(distance.tiles);
-    fmt::print("| {} | {} | {} / {} | {:.0f} / {:.0f} | {:.1f} / {:.1f} | {:.1f} / {:.1f} | "
-               "{:.2f} / {:.2f} | {:.1f}{} |\n",
-               file.stem().string(), on_features(some), some.plan.lanes.size(),
-               all.plan.lanes.size(), static_cast<double>(some.build.binary_bytes) / 1024.0,
-               static_cast<double>(all.build.binary_bytes) / 1024.0, some.build.seconds,
-               all.build.seconds, mebibytes(some.device_bytes), mebibytes(all.device_bytes),
-               rendering_seconds(some), rendering_seconds(all), distance.largest,
-               same ? "" : " **differs**");
-    std::fflush(stdout);
-    return same;
-}
-
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return values[values.size() / 2];
 }
 
-RenderResult rendered_with(const Scene& scene, const Device& device, const std::string& feature) {
+/// Rendering times with options over those without, the median of alternating turns.
+double time_ratio(const Scene& scene, const Device& device, const RenderOptions& options,
+                  const RenderOptions& without) {
+    std::vector<double> ratios;
+    for (int turn = 0; turn < turns; ++turn) {
+        const double plain = rendering_seconds(render(scene, device, without));
+        ratios.push_back(rendering_seconds(render(scene, device, options)) / plain);
+    }
+    return median(ratios);
+}
+
+/// A scene with the kernels that it needs, and with those of all features.
+struct BuiltScene {
+    Scene scene;
+    std::string name;
+    BuiltKernels some, all;
+};
+BuiltScene built_scene(const fs::path& file) {
+    const Scene scene = small_scene(file);
+    return {scene, file.stem().string(), kernels_built_anew(scene, with_extra(Extra::Nothing)),
+            kernels_built_anew(scene, with_extra(Extra::Features))};
+}
+
+/// One scene's row; false when its images differ.
+bool print_scene(const BuiltScene& built, const Device& device) {
+    const Scene& scene = built.scene;
+    const RenderOptions some = with_extra(Extra::Nothing), all = with_extra(Extra::Features),
+                        keeping = with_extra(Extra::Wavelengths);
+    const RenderResult needed = render(scene, device, some), kept = render(scene, device, keeping);
+    const TileDistance features = tile_distance(needed.image, render(scene, device, all).image);
+    const TileDistance wavelengths = tile_distance(needed.image, kept.image);
+    const bool same = features.largest < sidak_bound(features.tiles) &&
+                      wavelengths.largest < sidak_bound(wavelengths.tiles);
+    fmt::print("| {} | {} | {:.0f} / {:.0f} | {:.1f} / {:.1f} | {:.1f} / {:.1f} | {:.1f} / {:.1f} "
+               "| {:.2f} | {:.2f} | {} / {} | {:.2f} | {:.1f}, {:.1f}{} |\n",
+               built.name, on_features(needed), kibibytes(built.some.source_bytes),
+               kibibytes(built.all.source_bytes), thousands(built.some.instructions),
+               thousands(built.all.instructions), built.some.seconds, built.all.seconds,
+               mebibytes(built.some.device_bytes), mebibytes(built.all.device_bytes),
+               rendering_seconds(needed), time_ratio(scene, device, all, some),
+               needed.plan.lanes.size(), kept.plan.lanes.size(),
+               time_ratio(scene, device, keeping, some), features.largest, wavelengths.largest,
+               same ? "" : " **differs**");
+    std::fflush(stdout);
+    return same;
+}
+
+RenderOptions with_feature(const std::string& feature) {
     RenderOptions options;
     options.samples = samples;
     options.bands = WavelengthGrid{380, 6.25, 64};
     options.also_on = feature;
-    return render(scene, device, options);
+    return options;
 }
 
-/// Program and buffers of the scene with one feature more than it needs, and its time against that
-/// without, the median of turns.
-void print_feature(const std::string& feature, const Scene& scene, const Device& device,
-                   const EmptyCache& cache, const RenderResult& without) {
-    constexpr int turns = 7;
-    cache.empty_programs();
-    const RenderResult with = rendered_with(scene, device, feature);
-    std::vector<double> ratios;
-    for (int turn = 0; turn < turns; ++turn) {
-        const double plain = rendering_seconds(rendered_with(scene, device, ""));
-        ratios.push_back(rendering_seconds(rendered_with(scene, device, feature)) / plain);
-    }
-    const TileDistance distance = tile_distance(without.image, with.image);
-    fmt::print("| {} | {:+.1f} | {:+.2f} | {:+.2f} | {:.2f} | {} |\n", feature,
-               (static_cast<double>(with.build.binary_bytes) -
-                static_cast<double>(without.build.binary_bytes)) /
-                   1024.0,
-               with.build.seconds - without.build.seconds,
-               mebibytes(with.device_bytes) - mebibytes(without.device_bytes), median(ratios),
-               with.image.values == without.image.values ? "bit for bit"
-                                                         : fmt::format("{:.1f}", distance.largest));
+/// The reference study by the feature that it has more than it needs ("": none).
+using BuiltFeatures = std::map<std::string, BuiltKernels>;
+
+BuiltFeatures built_features(const Scene& scene) {
+    BuiltFeatures built = {{"", kernels_built_anew(scene, with_feature(""))}};
+    for (const auto& [feature, on] : RenderFeatures{}.listed())
+        if (feature != "hero" && feature != "double") // no bits: another estimator, another type
+            built[feature] = kernels_built_anew(scene, with_feature(feature));
+    return built;
+}
+
+/// Programs and buffers of the scene with one feature more than it needs, and its time.
+void print_feature(const std::string& feature, const BuiltKernels& with,
+                   const BuiltKernels& without, const Scene& scene, const Device& device,
+                   const RenderResult& plain) {
+    const SpectralImage image = render(scene, device, with_feature(feature)).image;
+    fmt::print("| {} | {:+.1f} | {:+.1f} | {:+.2f} | {:+.2f} | {:.2f} | {} |\n", feature,
+               kibibytes(with.source_bytes) - kibibytes(without.source_bytes),
+               thousands(with.instructions) - thousands(without.instructions),
+               with.seconds - without.seconds,
+               mebibytes(with.device_bytes) - mebibytes(without.device_bytes),
+               time_ratio(scene, device, with_feature(feature), with_feature("")),
+               image.values == plain.image.values
+                   ? "bit for bit"
+                   : fmt::format("{:.1f}", tile_distance(plain.image, image).largest));
     std::fflush(stdout);
 }
 
-void print_features(const Device& device, const EmptyCache& cache) {
-    const Scene scene =
-        small_scene(fs::path(RERADIANT_SOURCE_DIR) / "tools" / "examples" / "reference-study.toml");
-    cache.empty_programs();
-    const RenderResult without = rendered_with(scene, device, "");
+void print_features(const BuiltFeatures& built, const Scene& scene, const Device& device) {
+    const BuiltKernels& without = built.at("");
+    const RenderResult plain = render(scene, device, with_feature(""));
     fmt::print(
-        "\nreference-study, 64 bands: {:.0f} KiB of programs built in {:.1f} s, {:.1f} MiB "
-        "of buffers. One feature more:\n\n"
-        "| feature | programs, KiB | building, s | buffers, MiB | rendering with : without | "
-        "image differs by, s.e. |\n| --- | --- | --- | --- | --- | --- |\n",
-        static_cast<double>(without.build.binary_bytes) / 1024.0, without.build.seconds,
+        "\nreference-study, 64 bands: {:.0f} KiB of source, {:.1f} thousand instructions built in "
+        "{:.1f} s, {:.1f} MiB of buffers. One feature more:\n\n"
+        "| feature | source, KiB | instructions, thousand | building, s | buffers, MiB | "
+        "rendering with : without | image differs by, s.e. |\n"
+        "| --- | --- | --- | --- | --- | --- | --- |\n",
+        kibibytes(without.source_bytes), thousands(without.instructions), without.seconds,
         mebibytes(without.device_bytes));
-    for (const auto& [feature, on] : without.features)
-        if (!on && feature != "hero" && feature != "double") // no bits: another estimator, type
-            print_feature(feature, scene, device, cache, without);
+    for (const auto& [feature, on] : plain.features)
+        if (!on && built.contains(feature))
+            print_feature(feature, built.at(feature), without, scene, device, plain);
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-    std::vector<fs::path> scenes(argv + 1, argv + argc);
-    if (scenes.empty())
-        scenes = example_scenes();
-    const EmptyCache cache;
+    std::vector<fs::path> files(argv + 1, argv + argc);
+    if (files.empty())
+        files = example_scenes();
+    // all that is built anew comes first: its processes must not inherit a device
+    std::vector<BuiltScene> scenes;
+    std::transform(files.begin(), files.end(), std::back_inserter(scenes), built_scene);
+    const Scene study =
+        small_scene(fs::path(RERADIANT_SOURCE_DIR) / "tools" / "examples" / "reference-study.toml");
+    const BuiltFeatures features = argc == 1 ? built_features(study) : BuiltFeatures{};
+
     prepare_opencl(0);
     const Device device("");
-    fmt::print("{} pixels wide, {} samples a pixel; each figure with what the scene needs / with "
-               "all features and wavelengths.\n\n"
-               "| scene | features that are on | wavelengths | programs, KiB | building, s | "
-               "buffers, MiB | rendering, s | images differ by, s.e. |\n"
-               "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
-               film_width, samples);
+    fmt::print(
+        "{} pixels wide, {} samples a pixel; where there are two figures: what the scene "
+        "needs / all features. \"x all\" is the time with all features or wavelengths over "
+        "that with those needed.\n\n"
+        "| scene | features that are on | source, KiB | instructions, thousand | building, s "
+        "| buffers, MiB | rendering, s | x all features | wavelengths: needed / all | x all "
+        "wavelengths | images differ by, s.e. |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+        film_width, samples);
     bool all_same = true;
-    for (const fs::path& scene : scenes)
-        all_same = print_scene(scene, device, cache) && all_same;
-    if (argc == 1)
-        print_features(device, cache);
+    for (const BuiltScene& scene : scenes)
+        all_same = print_scene(scene, device) && all_same;
+    if (!features.empty())
+        print_features(features, study, device);
     return all_same ? 0 : 3;
 }

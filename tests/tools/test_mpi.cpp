@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace reradiant {
@@ -42,9 +43,13 @@ protected:
         ASSERT_EQ(a.sample_count, b.sample_count);
         for (std::size_t i = 0; i < a.values.size(); ++i)
             ASSERT_NEAR(a.values[i], b.values[i], 1e-6f * std::abs(b.values[i])) << i;
-        // of float sums of squares, scaled by halves whose sums are floats
+        // of float sums of squares, scaled by halves whose sums are floats; where all samples are
+        // the same the variance is a rounding
+        const float rounding = 1e-6f * *std::ranges::max_element(b.variance_y);
         for (std::size_t i = 0; i < a.variance_y.size(); ++i)
-            ASSERT_NEAR(a.variance_y[i], b.variance_y[i], 1e-3f * b.variance_y[i] + 1e-12f) << i;
+            ASSERT_NEAR(a.variance_y[i], b.variance_y[i],
+                        1e-3f * std::abs(b.variance_y[i]) + rounding)
+                << i;
     }
 };
 
@@ -66,7 +71,7 @@ TEST_F(Mpi, AnyNumberOfRanksGivesThePictureOfOne) {
         EXPECT_EQ(count_of(result.output, "samples a pixel"), 1u) << "one rank speaks";
         expect_equal("many.exr", "one.exr");
         const auto many = json("many.json"), one = json("one.json");
-        EXPECT_EQ(many.at("ranks"), ranks);
+        EXPECT_EQ(many.value("ranks", 1), ranks);
         EXPECT_EQ(many.at("paths"), one.at("paths"));
         EXPECT_EQ(many.at("rays"), one.at("rays"));
         const double error = one.at("relmse").get<double>();
@@ -92,7 +97,7 @@ TEST_F(Mpi, RulesThatStopARenderStopAllRanks) {
 TEST_F(Mpi, WhatIsWrongIsSaidOnceAndEndsAllRanks) {
     ProgramResult result = run_ranks(3, "render missing.toml -o out.exr");
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_EQ(count_of(result.errors, "cannot read"), 1u) << result.errors;
+    EXPECT_EQ(count_of(result.errors, "no such file"), 1u) << result.errors;
     result = run_ranks(3, "render scene.toml -o out.exr --spp 0");
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_EQ(count_of(result.errors, "--spp"), 1u) << result.errors;

@@ -31,6 +31,7 @@ RenderOptions options_from(const py::dict& given) {
     options.wavelengths.centred = given["centred"].cast<bool>();
     options.all_features = given["all_features"].cast<bool>();
     options.wavelengths.keep_all = options.all_features;
+    options.adaptive = given["adaptive"].cast<bool>();
     options.band_variance = given["band_variance"].cast<bool>();
     options.memory_limit_bytes = given["memory_limit"].cast<std::uint64_t>();
     if (!given["bands"].is_none())

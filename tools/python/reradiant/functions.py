@@ -22,8 +22,8 @@ MOST_SAMPLES = 1 << 30
 def render(scene: Any, *, spp: Optional[int] = None, seed: int = 0, time: Optional[float] = None,
            error: Optional[float] = None, model: str = "auto", wavelengths: str = "comb",
            comb_phase: str = "random", bands: Any = None, sample_range: Any = None, threads: int = 0,
-           device: str = "", band_variance: bool = False, all_features: bool = False,
-           memory_limit: int = 0, folder: Any = None) -> Image:
+           adaptive: bool = False, device: str = "", band_variance: bool = False,
+           all_features: bool = False, memory_limit: int = 0, folder: Any = None) -> Image:
     """Path traces a scene.
 
     Parameters
@@ -44,6 +44,8 @@ def render(scene: Any, *, spp: Optional[int] = None, seed: int = 0, time: Option
         Centres of the film's bands instead of the scene's.
     sample_range : (first, end)
         Only these samples of every pixel, to be merged with others.
+    adaptive : bool
+        More samples where the error is; `spp` is then the mean over pixels.
     folder : path
         Where relative paths of a dict start; the working folder by default.
 
@@ -99,6 +101,7 @@ def render(scene: Any, *, spp: Optional[int] = None, seed: int = 0, time: Option
         "centred": phase == "centre",
         "bands": _checks.bands(bands),
         "device": _checks.text("device", device),
+        "adaptive": _checks.flag("adaptive", adaptive),
         "band_variance": _checks.flag("band_variance", band_variance),
         "all_features": _checks.flag("all_features", all_features),
         "memory_limit": _checks.integer("memory_limit", memory_limit, 0, 2**63 - 1),

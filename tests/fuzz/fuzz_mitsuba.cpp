@@ -1,0 +1,14 @@
+#include "host/scene/scene.h"
+#include "tests/fuzz/check_scene.h"
+#include "tests/fuzz/fuzz_input.h"
+
+// Scenes of Mitsuba 3 in XML.
+
+using namespace reradiant;
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+    [[maybe_unused]] static const bool prepared = (fuzz::put_companions(), true);
+    const auto file = fuzz::put("input.xml", fuzz::text_of(bytes, size));
+    fuzz::read_or_refuse([&] { fuzz::check_scene(load_scene(file)); });
+    return 0;
+}

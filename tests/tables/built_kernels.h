@@ -1,0 +1,20 @@
+#pragma once
+
+#include "host/render/renderer.h"
+
+#include <cstddef>
+
+namespace reradiant {
+
+/// What the kernels of a scene are, and what they took to build from nothing.
+struct BuiltKernels {
+    double seconds = 0.0;
+    std::size_t source_bytes = 0, instructions = 0, device_bytes = 0;
+};
+
+/// Renders a scene in a child process with empty caches; the driver of a process that has built a
+/// program before would not build it again. To be called before this process uses OpenCL, which
+/// does not survive a fork. Run-time Error when the child fails.
+BuiltKernels kernels_built_anew(const Scene& scene, const RenderOptions& options);
+
+} // namespace reradiant
