@@ -24,6 +24,7 @@ struct MeasureOptions {
     bool hemispherical = false;
     std::string model = "auto", bands;
     long samples = 0;
+    std::uint64_t memory_limit_bytes = 0;
 };
 
 std::filesystem::path material_file(const MeasureOptions& options) {
@@ -61,6 +62,7 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
     request.model = parse_model_option(options.model);
     request.samples = options.samples;
     request.seed = common.seed;
+    request.memory_limit_bytes = options.memory_limit_bytes;
     if (!options.bands.empty()) {
         request.bands = parse_bands_option(options.bands);
     }
@@ -119,6 +121,9 @@ void add_measure_command(CLI::App& program, CommandContext& context) {
         ->add_option("--samples", options->samples,
                      "paths per theta-i (model walk only; default 65536), in blocks of 256")
         ->check(CLI::NonNegativeNumber);
+    command->add_option("--memory-limit", options->memory_limit_bytes,
+                        "refuse a measurement that would take more bytes (default: 80 % of the "
+                        "machine's)");
     command->footer("Example: reradiant measure lacquer.toml -o lacquer.csv --theta-i 45 "
                     "--theta-o 0,20,60 --phi 180");
     command->callback(

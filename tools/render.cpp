@@ -146,6 +146,9 @@ int run_render(RenderCommand command, const CommandContext& context) {
     if (result.non_finite > 0)
         spdlog::warn("{} samples were not finite and were left out", result.non_finite);
     write_spectral_exr(command.output, result.image, command.display.exposure_ev);
+    std::error_code ignored; // not before: what a full disk does not take can be written later
+    if (!command.render.checkpoint.empty())
+        std::filesystem::remove(command.render.checkpoint, ignored);
     if (!command.png.empty()) {
         const std::size_t outside = write_display_png(command.png, result.image, command.display);
         if (outside > 0 && !common.quiet)

@@ -12,6 +12,7 @@
 #include "host/scene/model_choice.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -211,16 +212,17 @@ public:
         head_.passes = result.passes;
         head_.paths = result.paths + wavefront.statistics().paths;
         head_.rays = result.rays + wavefront.statistics().rays;
-        wavefront.film().read(
-            [&](FilmSums film) { write_checkpoint(options_.checkpoint, head_, film); });
+        try {
+            wavefront.film().read(
+                [&](FilmSums film) { write_checkpoint(options_.checkpoint, head_, film); });
+        } catch (const Error& error) {
+            // A full disk costs the checkpoint, not the render; an interrupted one has no more.
+            if (result.interrupted)
+                throw;
+            spdlog::warn("{}; the render goes on without", error.what());
+        }
         written_ = Clock::now();
         write_seconds_ = seconds_since(start);
-    }
-
-    void remove() const {
-        std::error_code ignored;
-        if (!options_.checkpoint.empty())
-            std::filesystem::remove(options_.checkpoint, ignored);
     }
 
 private:
@@ -304,8 +306,6 @@ RenderResult render(const Scene& scene, const Device& device, const RenderOption
     result.samples = state.samples;
     result.relmse = state.relmse;
     collect(result, wavefront, tables);
-    if (!result.interrupted)
-        checkpoints.remove();
     result.total_seconds = seconds_since(start);
     return result;
 }
