@@ -1,4 +1,5 @@
 #include "host/error.h"
+#include "host/film/image_memory.h"
 #include "host/film/spectral_image.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
@@ -17,9 +18,11 @@ constexpr int exit_comparison_failed = 3;
 struct CompareOptions {
     std::filesystem::path image, reference;
     std::optional<double> max_relmse;
+    std::uint64_t memory_limit_bytes = 0;
 };
 
 Comparison compare_files(const CompareOptions& options) {
+    check_compare_memory(options.image, options.reference, options.memory_limit_bytes);
     const SpectralImage image = read_spectral_exr(options.image);
     const SpectralImage reference = read_spectral_exr(options.reference);
     try {
@@ -66,6 +69,9 @@ void add_compare_command(CLI::App& program, CommandContext& context) {
         ->required();
     command->add_option("--max-relmse", options->max_relmse, "exit with 3 when relMSE is higher")
         ->check(CLI::NonNegativeNumber);
+    command->add_option(
+        "--memory-limit", options->memory_limit_bytes,
+        "refuse images that would take more bytes (default: 80 % of the machine's)");
     command->footer("Example: reradiant compare out.exr reference.exr --max-relmse 0.01");
     command->callback(
         [options, &context] { context.exit_code = run_compare(*options, context.common); });

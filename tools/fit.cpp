@@ -1,5 +1,6 @@
 #include "host/fit/fit.h"
 #include "host/error.h"
+#include "host/fit/fit_memory.h"
 #include "host/fit/fit_report.h"
 #include "host/fit/fit_summary.h"
 #include "host/fit/model_file.h"
@@ -28,6 +29,7 @@ struct FitOptions {
     std::vector<std::string> unknown;
     bool anti_stokes = false;
     double seconds = 60.0;
+    std::uint64_t memory_limit_bytes = 0;
     int iterations = SolverSettings{}.most_iterations;
 };
 
@@ -86,6 +88,7 @@ int run_fit(const FitOptions& options, const CommonOptions& common) {
         if (!file->empty())
             check_output_folder(*file);
     const BispectralData data = read_bispectral_data(options.data);
+    check_fit_memory(data, settings, options.memory_limit_bytes);
     const FitResult result = fit_reradiation(data, settings);
     warn(result);
     if (!result.failure.empty())
@@ -134,6 +137,8 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
         ->add_option("--spill-nm", options->spill_nm,
                      "entries this near to the diagonal are not fitted; default: one band")
         ->check(CLI::NonNegativeNumber);
+    command->add_option("--memory-limit", options->memory_limit_bytes,
+                        "refuse a fit that would take more bytes (default: 80 % of the machine's)");
     command->add_option("--loss", options->loss, "none, huber or cauchy")->capture_default_str();
     command->add_option("--stack", options->stack,
                         "MATERIAL.toml whose layers lay above the sample");

@@ -28,6 +28,7 @@ struct MeasureOptions {
     long samples = 0;
     double checkpoint_seconds = 60.0;
     bool resume = false;
+    std::uint64_t memory_limit_bytes = 0;
 };
 
 std::filesystem::path material_file(const MeasureOptions& options) {
@@ -125,6 +126,7 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
     request.model = parse_model_option(options.model);
     request.samples = options.samples;
     request.seed = common.seed;
+    request.memory_limit_bytes = options.memory_limit_bytes;
     if (!options.bands.empty()) {
         request.bands = parse_bands_option(options.bands);
     }
@@ -192,6 +194,9 @@ void add_measure_command(CLI::App& program, CommandContext& context) {
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     command->add_flag("--resume", options->resume, "go on from OUT.csv.checkpoint where it exists");
+    command->add_option("--memory-limit", options->memory_limit_bytes,
+                        "refuse a measurement that would take more bytes (default: 80 % of the "
+                        "machine's)");
     command->footer("Example: reradiant measure lacquer.toml -o lacquer.csv --theta-i 45 "
                     "--theta-o 0,20,60 --phi 180");
     command->callback(

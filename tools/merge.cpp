@@ -1,5 +1,6 @@
 #include "host/film/merge.h"
 #include "host/error.h"
+#include "host/film/image_memory.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
 #include "tools/parse_options.h"
@@ -17,10 +18,12 @@ struct MergeCommand {
     std::vector<std::filesystem::path> parts;
     std::filesystem::path output, png;
     DisplayOptions display;
+    std::uint64_t memory_limit_bytes = 0;
 };
 
 int run_merge(const MergeCommand& command, const CommandContext& context) {
     check_output_folder(command.output);
+    check_merge_memory(command.parts, command.memory_limit_bytes);
     MergedImage merged = merge_images(command.parts);
     for (const SampleRange& gap : merged.gaps)
         spdlog::warn("samples {} to {} are missing", gap.first, gap.end - 1);
@@ -50,6 +53,8 @@ void add_merge_command(CLI::App& program, CommandContext& context) {
     app->add_option("-o,--output", command->output, "spectral EXR to write")->required();
     app->add_option("--png", command->png, "write the display image too");
     app->add_option("--exposure", command->display.exposure_ev, "exposure of the images, EV");
+    app->add_option("--memory-limit", command->memory_limit_bytes,
+                    "refuse parts that would take more bytes (default: 80 % of the machine's)");
     app->footer("Example: reradiant render s.toml -o a.exr --sample-range 0:64\n"
                 "         reradiant render s.toml -o b.exr --sample-range 64:128\n"
                 "         reradiant merge a.exr b.exr -o all.exr");

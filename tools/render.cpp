@@ -135,6 +135,9 @@ RenderResult render_image(const RenderCommand& command, const CommonOptions& com
 void write_results(const RenderCommand& command, const CommonOptions& common,
                    const RenderResult& result) {
     write_spectral_exr(command.output, result.image, command.display.exposure_ev);
+    std::error_code ignored; // not before: what a full disk does not take can be written later
+    if (!command.render.checkpoint.empty())
+        std::filesystem::remove(command.render.checkpoint, ignored);
     if (command.png.empty())
         return;
     const std::size_t outside = write_display_png(command.png, result.image, command.display);

@@ -1,5 +1,7 @@
 #include "host/measure/measure.h"
 
+#include "host/measure/measure_memory.h"
+
 #include "host/error.h"
 #include "host/measure/surface_angles.h"
 #include "host/measure/surface_model.h"
@@ -199,6 +201,7 @@ Measurement measure_material(const Material& material, const MeasureRequest& req
     resolved.model = choice.model;
     check_request(resolved);
     const WavelengthGrid bands = measured_bands(material, request);
+    check_measure_memory(bands, material.substrate.is_fluorescent(), request);
     Measurement measurement = measure_substrate(
         material.stack, measured_substrate(material.substrate, bands), bands, resolved);
     if (!choice.reason.empty()) {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -24,8 +25,9 @@ struct MeasureRequest {
     bool hemispherical = false; ///< directional-hemispherical; theta_o and phi are not used
     Model model = Model::Auto;
     std::optional<WavelengthGrid> bands; ///< empty: the matrix's own grid
-    long samples = 0;        ///< of the walk: paths for each theta_i, 0: default_walk_samples
-    unsigned seed = 0;       ///< of the walk
+    long samples = 0;  ///< of the walk: paths for each theta_i, 0: default_walk_samples
+    unsigned seed = 0; ///< of the walk
+    std::uint64_t memory_limit_bytes = 0; ///< 0: 80 % of the machine's
     StopFlag stop = nullptr; ///< asked between two walks, and between two pairs of directions
     /// Of the walk: what an earlier call with the same request told of every theta_i that it began,
     /// and who is told, between walks, how to get that.

@@ -55,16 +55,17 @@ void CheckpointFile::after_pass(const Wavefront& wavefront, const RenderResult& 
     head_.passes = result.passes;
     head_.paths = result.paths + wavefront.statistics().paths;
     head_.rays = result.rays + wavefront.statistics().rays;
-    wavefront.film().read(
-        [&](FilmSums film) { write_checkpoint(options_.checkpoint, head_, film); });
+    try {
+        wavefront.film().read(
+            [&](FilmSums film) { write_checkpoint(options_.checkpoint, head_, film); });
+    } catch (const Error& error) {
+        // A full disk costs the checkpoint, not the render; an interrupted one has no more.
+        if (result.interrupted)
+            throw;
+        spdlog::warn("{}; the render goes on without", error.what());
+    }
     written_ = Clock::now();
     write_seconds_ = seconds_since(start);
-}
-
-void CheckpointFile::remove() const {
-    std::error_code ignored;
-    if (!options_.checkpoint.empty())
-        std::filesystem::remove(options_.checkpoint, ignored);
 }
 
 } // namespace reradiant

@@ -17,7 +17,6 @@ public:
     /// Writes one when it is time, and for an interrupted render. Keeps the share of time that goes
     /// into writing below a tenth. The result's passes end with the state of the film.
     void after_pass(const Wavefront& wavefront, const RenderResult& result);
-    void remove() const;
 
 private:
     using Clock = std::chrono::steady_clock;

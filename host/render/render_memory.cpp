@@ -1,6 +1,7 @@
 #include "host/render/render_memory.h"
 
 #include "host/error.h"
+#include "host/memory_limit.h"
 #include "host/render/film_sums.h"
 #include "host/render/hero_tables.h"
 #include "host/render/scene_tables.h"
@@ -11,16 +12,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <unistd.h>
 
 namespace reradiant {
 
 namespace {
-
-std::uint64_t machine_memory_bytes() {
-    return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-           static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE));
-}
 
 /// What models need of a path's vertices, and of a path that walks.
 struct ModelBytes {

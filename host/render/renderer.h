@@ -82,7 +82,7 @@ struct RenderResult {
 /// the result holds what was done. `observe` is called before it; the time that it takes is left
 /// out of RenderProgress::seconds. Input Error when the predicted memory exceeds the limit, or when
 /// the checkpoint to resume is damaged or of another scene, build, device or setting. The
-/// checkpoint is removed when the render has ended by itself.
+/// checkpoint stays until the image is kept; one that cannot be written costs a warning.
 RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
                     const std::function<bool(const RenderProgress&)>& progress = {},
                     const RenderObserver& observe = {});

@@ -177,8 +177,6 @@ RenderResult Rendering::finish() {
 
 RenderResult Rendering::finish_with_image() {
     finish_film(result_, wavefront_, film_resolver(layout_, scene_, result_.plan));
-    if (!result_.interrupted)
-        checkpoint_.remove();
     return finish();
 }
 

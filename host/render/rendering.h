@@ -38,7 +38,7 @@ public:
     bool interrupted() const { return result_.interrupted; }
     /// The result, without an image. Nothing can be rendered afterwards.
     RenderResult finish();
-    /// The same with the image; the checkpoint is removed unless the render was interrupted.
+    /// The same with the image.
     RenderResult finish_with_image();
 
 private:

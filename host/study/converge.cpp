@@ -132,6 +132,7 @@ private:
                              {last.relmse, last.relmse_low, last.relmse_high}};
         result_.reference.image.attributes["reradiant:seed"] = std::to_string(render.seed);
         keep_reference(options_.folder, result_.reference);
+        remove_checkpoint(options_.folder / "reference.exr");
         await_leader();
     }
 
@@ -150,9 +151,19 @@ private:
     /// Lets a render keep what it has beside the image that it is to become.
     void keep_as(RenderOptions& render, const std::filesystem::path& image) const {
         std::filesystem::create_directories(image.parent_path());
-        render.checkpoint = image.string() + ".checkpoint";
+        render.checkpoint = checkpoint_of(image);
         render.resume = true;
         render.restart_if_other = !options_.resume;
+    }
+
+    static std::filesystem::path checkpoint_of(const std::filesystem::path& image) {
+        return image.string() + ".checkpoint";
+    }
+
+    /// Once the image is kept.
+    static void remove_checkpoint(const std::filesystem::path& image) {
+        std::error_code ignored;
+        std::filesystem::remove(checkpoint_of(image), ignored);
     }
 
     /// Renders with progress from `share` on; sets `interrupted` when it was stopped.
@@ -233,6 +244,7 @@ private:
         if (result_.interrupted)
             return;
         keep_method(options_.folder, method_identity(index), result);
+        remove_checkpoint(method_image(options_.folder, options_.methods[index]));
         result_.methods.push_back(std::move(result));
     }
 

@@ -177,6 +177,8 @@ private:
         if (result_.interrupted)
             return;
         keep_cell(cell, identity);
+        std::error_code ignored;
+        std::filesystem::remove(cell_checkpoint(cell), ignored);
         ++done_now_;
     }
 

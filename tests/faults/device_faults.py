@@ -25,7 +25,7 @@ def fails_cleanly(bench, faults, words, name, outcome):
 
 
 def device_lost(bench):
-    points = range(1, 40, 1 if bench.full else 13)
+    points = range(1, 30, 1 if bench.full else 13)
     return fails_cleanly(bench, [{"RERADIANT_FAULT_LAUNCH": at} for at in points],
                          ["CL_DEVICE_NOT_AVAILABLE"], "device lost at a kernel launch",
                          "exit 1 naming the error, older file stays")

@@ -1,5 +1,6 @@
 """Disks that are full, folders that are closed, files that are half there."""
 
+import json
 import os
 import pathlib
 import resource
@@ -109,6 +110,33 @@ def small_disk(bench):
                "exit 1, older file stays, nothing half-written")
 
 
+def full_for_one_file(bench):
+    """A disk that is full when a checkpoint is written costs no render; one that is full when the
+    image is written costs nothing that --resume does not bring back."""
+    folder = bench.folder()
+    command = "render scene.toml -o out.exr --spp 2048 --checkpoint 0.001 --quiet"
+    bench.run_well(folder, command)
+    good = (folder / "out.exr").read_bytes()
+    (folder / "out.exr").unlink()
+    result = bench.run(folder, command.replace(" --quiet", ""),
+                       environment=bench.preloaded(RERADIANT_FAULT_RENAME=".checkpoint"))
+    expect(result, (0,), command)
+    if "goes on without" not in result.errors:
+        raise Unexpected(f"no word of the checkpoint that was not written: {result.errors}")
+    (folder / "good.exr").write_bytes(good)
+    bench.run_well(folder, "compare out.exr good.exr --max-relmse 0")
+    (folder / "out.exr").unlink()
+    expect(bench.run(folder, command, environment=bench.preloaded(RERADIANT_FAULT_RENAME=".exr")),
+           (1,), command)
+    corrupted = count_corrupted(folder / "out.exr", []) + len(leftovers(folder))
+    bench.run_well(folder, command + " --resume --json out.json")
+    bench.run_well(folder, "compare out.exr good.exr --max-relmse 0")
+    if json.loads((folder / "out.json").read_text())["resumed_spp"] < 1:
+        raise Unexpected("nothing was left to resume")
+    return Row("disk full for a checkpoint, for the image", 2, 0.0, corrupted,
+               "the render goes on; the checkpoint stays and --resume writes the same image")
+
+
 def closed_folders(bench):
     """Folders without leave to write; root may write anywhere, so root becomes nobody."""
     user = NOBODY if os.geteuid() == 0 else None
@@ -161,8 +189,8 @@ def unreadable_inputs(bench):
     commands.append("render scene.toml -o resumed.exr --spp 1 --resume")
     folder.chmod(0o777)
     for command in commands:
-        # 20 s: a pipe without a writer would be waited for without end.
-        result = bench.run(folder, command, user=user, seconds=20,
+        # A pipe without a writer would be waited for without end.
+        result = bench.run(folder, command, user=user,
                            environment={"RERADIANT_CACHE": str(folder / "cache")})
         expect(result, (1, 2), command)
     left = [name for name in ("out.csv", "out") if (folder / name).exists()]
@@ -185,4 +213,4 @@ def half_written_images(bench):
     return Row("reader of a half-written EXR", tries, 0.0, accepted, "exit 2, none is taken")
 
 
-FAULTS = [file_sizes_limited, small_disk, closed_folders, unreadable_inputs, half_written_images]
+FAULTS = [file_sizes_limited, small_disk, full_for_one_file, closed_folders, unreadable_inputs, half_written_images]

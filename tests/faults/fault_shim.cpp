@@ -3,14 +3,18 @@
 //   RERADIANT_FAULT_LAUNCH=N   the device is gone at the Nth kernel launch and stays so
 //   RERADIANT_FAULT_BUFFER=N   the Nth buffer is not allocated
 //   RERADIANT_FAULT_BUILD=1    no kernel builds
+//   RERADIANT_FAULT_RENAME=.x  no file is renamed to a name that ends so: the disk is full
 //   RERADIANT_FAULT_CLOCK=1    the wall clock leaps by up to a day, back and forth, at every look
 
 #include <CL/cl.h>
 
 #include <atomic>
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <dlfcn.h>
+#include <string_view>
 #include <sys/time.h>
 
 namespace {
@@ -72,6 +76,15 @@ cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* dev
     if (number_of("RERADIANT_FAULT_BUILD") != 0)
         return CL_BUILD_PROGRAM_FAILURE;
     return real(program, count, devices, options, notify, data);
+}
+
+int rename(const char* from, const char* to) noexcept {
+    static const auto real = next<int (*)(const char*, const char*)>("rename");
+    const char* const ending = std::getenv("RERADIANT_FAULT_RENAME");
+    if (ending == nullptr || !std::string_view(to).ends_with(ending))
+        return real(from, to);
+    errno = ENOSPC;
+    return -1;
 }
 
 int clock_gettime(clockid_t clock, timespec* now) noexcept {

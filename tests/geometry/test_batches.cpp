@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 #include <numeric>
+#include <string>
 
 using namespace reradiant;
 using namespace reradiant::testing;
@@ -32,6 +34,15 @@ double million_rays_per_second(const Geometry& geometry, const std::vector<RayRe
     geometry.intersect(rays, hits, coherent, 1);
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     return static_cast<double>(rays.size()) / seconds * 1e-6;
+}
+
+/// Of the heap and other private memory, resident or not.
+long taken_kilobytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmData:"))
+            return std::stol(line.substr(7));
+    return 0;
 }
 
 } // namespace
@@ -117,4 +128,20 @@ TEST(Batches, SpeedIsReported) {
                 geometry.memory_bytes());
     EXPECT_GT(coherent, 0.0);
     EXPECT_GT(geometry.memory_bytes(), 1000u);
+}
+
+// A day of rendering traces millions of batches: 2,000 took 16 MB more when each had an arena of
+// its own.
+TEST(Batches, TracingTakesNoMemoryThatStays) {
+    const Geometry geometry(scene_with_mesh());
+    const std::vector<RayRecord> rays = random_rays(64, 3);
+    std::vector<HitRecord> hits(rays.size());
+    const auto trace = [&](int batches) {
+        for (int batch = 0; batch < batches; ++batch)
+            geometry.intersect(rays, hits, false, 0);
+    };
+    trace(100);
+    const long before = taken_kilobytes();
+    trace(2000);
+    EXPECT_LT(taken_kilobytes() - before, 2000);
 }

@@ -1,0 +1,62 @@
+#include "host/film/image_memory.h"
+
+#include "host/film/exr_input.h"
+#include "host/film/spectral_channels.h"
+#include "host/memory_limit.h"
+
+#include <ImfChannelList.h>
+
+namespace reradiant {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ImageSize {
+    double pixels = 0.0;
+    double values = 0.0; ///< floats that read_spectral_exr keeps
+};
+
+ImageSize size_of(const fs::path& file) {
+    return with_exr_input(file, [](Imf::MultiPartInputFile& input) {
+        const Imath::Box2i window = input.header(0).dataWindow();
+        ImageSize size{(window.max.x - window.min.x + 1.0) * (window.max.y - window.min.y + 1.0),
+                       0.0};
+        for (int part = 0; part < input.parts(); ++part) {
+            const Imf::ChannelList& channels = input.header(part).channels();
+            for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+                size.values +=
+                    part > 0 || wavelength_of_channel(channel.name()) ? size.pixels : 0.0;
+        }
+        return size;
+    });
+}
+
+/// XYZ in double, of which several stages hold one each.
+constexpr double xyz_bytes = 3 * sizeof(double);
+
+} // namespace
+
+void check_compare_memory(const fs::path& image, const fs::path& reference,
+                          std::uint64_t limit_bytes) {
+    double bytes = 0.0;
+    for (const fs::path& file : {image, reference}) {
+        const ImageSize size = size_of(file);
+        bytes += size.values * sizeof(float) + 2 * size.pixels * xyz_bytes;
+    }
+    check_memory_limit({image.string()}, "the comparison", bytes, limit_bytes,
+                       "crop the images, take fewer bands");
+}
+
+void check_merge_memory(const std::vector<fs::path>& parts, std::uint64_t limit_bytes) {
+    for (const fs::path& part : parts) {
+        const ImageSize size = size_of(part);
+        // The first part, one more and the mean; sum and sum of squares of every value.
+        const double bytes =
+            size.values * (3 * sizeof(float) + 2 * sizeof(double)) + 2 * size.pixels * xyz_bytes;
+        check_memory_limit({part.string()}, "merging this", bytes, limit_bytes,
+                           "render with fewer bands");
+    }
+}
+
+} // namespace reradiant
