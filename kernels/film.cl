@@ -47,8 +47,9 @@ float film_luminance(const float16* value, __global const float* y_weights) {
 
 /// sums: [pixel][FILM_ROWS][FILM_LANES]: sum, its compensation, alternating sum (even minus odd
 /// samples), sum of squares. statistics: [pixel][6]: sums of Y and of Y^2, their compensations,
-/// samples refused, and (an integer) samples taken, of the strip that begins with `first_pixel`. bands: [phase][LANES], where a lane goes; weights: [phase][LANES][2], its
-/// weight there and in the band above.
+/// samples refused, and (an integer) samples taken, of the strip that begins with `first_pixel`.
+/// bands: [phase][LANES], where a lane goes; weights: [phase][LANES][2], its weight there and in
+/// the band above.
 __kernel void film(__global float* sums, __global float* statistics, __global const float* radiance,
                    __global const PathState* paths, __global const int* bands,
                    __global const float* weights, __global const float* y_weights, uint first_pixel,
