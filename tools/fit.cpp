@@ -4,17 +4,22 @@
 #include "host/fit/fit_report.h"
 #include "host/fit/fit_summary.h"
 #include "host/fit/model_file.h"
+#include "host/fit/solve_journal.h"
 #include "host/report/json_file.h"
 #include "host/scene/stack_file.h"
 #include "host/spectral/matrix_io.h"
 #include "tools/command.h"
+#include "tools/interrupt.h"
+#include "tools/kept_work.h"
 #include "tools/parse_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace reradiant {
 
@@ -31,6 +36,8 @@ struct FitOptions {
     double seconds = 60.0;
     std::uint64_t memory_limit_bytes = 0;
     int iterations = SolverSettings{}.most_iterations;
+    double checkpoint_seconds = 60.0;
+    bool resume = false;
 };
 
 FitSettings settings_of(const FitOptions& options, const CommonOptions& common) {
@@ -81,6 +88,52 @@ void warn(const FitResult& result) {
             spdlog::warn("{}", ambiguity);
 }
 
+/// What the steps of a fit depend on.
+SampleIdentity fit_identity(const FitOptions& options, const FitSettings& settings,
+                            const BispectralData& data) {
+    const auto number = [](const auto& value) {
+        return value ? fmt::format("{}", *value) : std::string("by itself");
+    };
+    return {{"data", file_digest(options.data)},
+            {"stack", settings.stack ? stack_digest(*settings.stack, data.emission) : "none"},
+            {"stack's file", settings.stack ? file_digest(options.stack) : "none"},
+            {"unknown", fmt::format("{}", fmt::join(options.unknown, ","))},
+            {"model", options.model},
+            {"loss", options.loss},
+            {"rank", number(options.rank)},
+            {"smoothing", number(options.smooth_nm)},
+            {"spill", number(options.spill_nm)},
+            {"bytes", number(options.bytes)},
+            {"anti-stokes", options.anti_stokes ? "on" : "off"},
+            {"seed", std::to_string(settings.seed)},
+            {"threads", std::to_string(settings.solver.threads)},
+            {"most seconds", fmt::format("{}", options.seconds)},
+            {"most iterations", std::to_string(options.iterations)}};
+}
+
+/// Fits with a checkpoint; nothing when it was interrupted, which it says.
+std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings settings,
+                                      const BispectralData& data) {
+    KeptWork kept(options.output, fit_identity(options, settings, data),
+                  options.checkpoint_seconds);
+    SolveJournal journal;
+    if (options.resume)
+        if (const auto state = kept.read())
+            journal = SolveJournal(*state);
+    journal.after_step = [&] { kept.keep_when_due([&] { return journal.json(); }); };
+    settings.solver.journal = &journal;
+    settings.solver.stop = interrupt_flag();
+    catch_interrupts();
+    try {
+        FitResult result = fit_reradiation(data, settings);
+        kept.remove();
+        return result;
+    } catch (const Interrupted&) {
+        fmt::print(stderr, "{}\n", kept.interruption_text());
+        return std::nullopt;
+    }
+}
+
 int run_fit(const FitOptions& options, const CommonOptions& common) {
     const FitSettings settings = settings_of(options, common);
     for (const std::filesystem::path* file :
@@ -89,7 +142,10 @@ int run_fit(const FitOptions& options, const CommonOptions& common) {
             check_output_folder(*file);
     const BispectralData data = read_bispectral_data(options.data);
     check_fit_memory(data, settings, options.memory_limit_bytes);
-    const FitResult result = fit_reradiation(data, settings);
+    const std::optional<FitResult> fitted = fit_and_keep(options, settings, data);
+    if (!fitted)
+        return exit_interrupted;
+    const FitResult& result = *fitted;
     warn(result);
     if (!result.failure.empty())
         throw_runtime_error(options.data.string() + ": " + result.failure,
@@ -159,6 +215,13 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
                      "limit of Ceres' steps in one minimisation")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+    command
+        ->add_option("--checkpoint", options->checkpoint_seconds,
+                     "write MATRIX.csv.checkpoint every so many seconds")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_flag("--resume", options->resume,
+                      "go on from MATRIX.csv.checkpoint where it exists");
     command->footer("Example: reradiant fit orange.BFC -o orange.csv --report orange.html");
     command->callback(
         [options, &context] { context.exit_code = run_fit(*options, context.common); });

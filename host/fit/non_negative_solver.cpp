@@ -1,9 +1,9 @@
 #include "host/fit/non_negative_solver.h"
 
 #include "host/fit/bounded_quadratic.h"
+#include "host/fit/linearisation.h"
+#include "host/fit/solve_journal.h"
 
-#include <ceres/crs_matrix.h>
-#include <ceres/problem.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,82 +23,6 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Cost and derivatives at a point.
-struct LocalModel {
-    double cost = 0.0;
-    Vector gradient, curvature;         ///< curvature: diagonal of `normal`
-    Eigen::SparseMatrix<double> normal; ///< J' J
-
-    /// The quadratic of a step from `parameters`, damped in units of the curvatures, as a function
-    /// of the parameters at the step's end. One that nothing depends on stays where it is.
-    Quadratic damped(const Vector& parameters, double damping) const {
-        Quadratic quadratic{normal, {}};
-        for (Eigen::Index k = 0; k < parameters.size(); ++k)
-            quadratic.h.coeffRef(k, k) += curvature(k) > 0.0 ? damping * curvature(k) : 1.0;
-        quadratic.c = gradient - quadratic.h * parameters;
-        return quadratic;
-    }
-};
-
-/// The Ceres problem of a model with its parameters in one vector. Ceres evaluates residuals,
-/// losses and Jacobians.
-class Linearisation {
-public:
-    Linearisation(const NonNegativeModel& model, const Vector& start,
-                  const SolverSettings& settings)
-        : values_(start) {
-        double* next = values_.data();
-        for (const int size : model.block_sizes()) {
-            options_.parameter_blocks.push_back(next);
-            problem_.AddParameterBlock(next, size);
-            next += size;
-        }
-        options_.num_threads = settings.threads;
-        model.add_residuals(problem_, options_.parameter_blocks);
-    }
-
-    /// Cost at a point, infinite where a residual cannot be evaluated.
-    double cost_at(const Vector& point) {
-        values_ = point;
-        double value = 0.0;
-        const bool good = problem_.Evaluate(options_, &value, nullptr, nullptr, nullptr);
-        return good && std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
-    }
-
-    /// Cost and its derivatives by some blocks, all where `blocks` is empty; nothing where they are
-    /// not defined.
-    std::optional<LocalModel> linearise(const Vector& point, const std::vector<double*>& blocks) {
-        values_ = point;
-        LocalModel local;
-        std::vector<double> slope;
-        ceres::CRSMatrix crs;
-        ceres::Problem::EvaluateOptions options = options_;
-        if (!blocks.empty())
-            options.parameter_blocks = blocks;
-        if (!problem_.Evaluate(options, &local.cost, nullptr, &slope, &crs))
-            return std::nullopt;
-        local.gradient =
-            Eigen::Map<const Vector>(slope.data(), static_cast<Eigen::Index>(slope.size()));
-        const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> jacobian(
-            crs.num_rows, crs.num_cols, static_cast<Eigen::Index>(crs.values.size()),
-            crs.rows.data(), crs.cols.data(), crs.values.data());
-        const Eigen::SparseMatrix<double> columns(jacobian);
-        local.normal = columns.transpose() * columns;
-        local.curvature = local.normal.diagonal();
-        if (!std::isfinite(local.cost) || !local.gradient.allFinite())
-            return std::nullopt;
-        return local;
-    }
-
-    const double* data() const { return values_.data(); }
-    const std::vector<double*>& blocks() const { return options_.parameter_blocks; }
-
-private:
-    Vector values_;
-    ceres::Problem problem_;
-    ceres::Problem::EvaluateOptions options_;
-};
-
 /// Damping of the next step, relative to the curvatures (Nielsen 1999).
 class Damping {
 public:
@@ -113,6 +37,14 @@ public:
         growth_ *= 2.0;
     }
     bool is_hopeless() const { return value_ > 1e12; }
+    void keep_in(SolveState& state) const {
+        state.damping = value_;
+        state.damping_growth = growth_;
+    }
+    void restore(const SolveState& state) {
+        value_ = state.damping;
+        growth_ = state.damping_growth;
+    }
 
 private:
     /// Factors may be mixed at no cost: with less the normal equations are singular there.
@@ -150,19 +82,49 @@ public:
     }
 
     SolveTrace run() {
+        if (settings_.journal != nullptr && goes_on())
+            return trace_;
         while (auto local = problem_.linearise(parameters_, {})) {
             here_ = std::move(*local);
             note();
-            if (must_stop())
+            if (must_stop()) {
+                keep(true);
                 return trace_;
+            }
             take_step();
+            keep(false);
         }
         trace_.converged = false;
         trace_.stop_reason = "the cost or its slope is not finite";
+        keep(true);
         return trace_;
     }
 
 private:
+    /// Takes the state of an earlier run; true when that came to the end.
+    bool goes_on() {
+        const SolveState state = settings_.journal->begin(parameters_);
+        kept_start_ = state.start;
+        if (!state.is_done && state.trace.iterations == 0)
+            return false;
+        parameters_ = state.parameters;
+        trace_ = state.trace;
+        damping_.restore(state);
+        idle_ = state.idle_steps;
+        seconds_before_ = state.seconds;
+        return state.is_done;
+    }
+
+    void keep(bool is_done) {
+        if (settings_.journal == nullptr)
+            return;
+        SolveState state{kept_start_, parameters_, trace_, 0.0, 0.0, seconds(), idle_, is_done};
+        damping_.keep_in(state);
+        settings_.journal->note(std::move(state));
+    }
+
+    double seconds() const { return seconds_before_ + seconds_since(begin_); }
+
     void note() {
         ++trace_.iterations;
         trace_.cost.push_back(here_.cost);
@@ -180,7 +142,7 @@ private:
             trace_.converged = trace_.kkt <= kkt_of_rounding;
             trace_.stop_reason = fmt::format(
                 "no step lowers the cost any more; the KKT conditions hold to {:.1e}", trace_.kkt);
-        } else if (seconds_since(begin_) > settings_.most_seconds) {
+        } else if (seconds() > settings_.most_seconds) {
             trace_.stop_reason = "the limit of time was reached";
         } else if (trace_.iterations >= settings_.most_iterations) {
             trace_.stop_reason = "the limit of iterations was reached";
@@ -261,6 +223,8 @@ private:
     Damping damping_;
     SolveTrace trace_;
     int idle_ = 0;
+    Vector kept_start_;
+    double seconds_before_ = 0.0; ///< of an earlier run
 };
 
 } // namespace

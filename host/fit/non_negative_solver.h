@@ -16,6 +16,8 @@ class Problem;
 
 namespace reradiant {
 
+class SolveJournal;
+
 /// How the linear systems of a step are solved.
 struct LinearAlgebra {
     enum class Type { DenseNormal, SparseNormal } type = Type::DenseNormal;
@@ -40,7 +42,8 @@ struct SolverSettings {
     double kkt_tolerance = 1e-8;
     double most_seconds = 60.0;
     int threads = 1;
-    StopFlag stop = nullptr; ///< asked before every step
+    StopFlag stop = nullptr;         ///< asked before every step
+    SolveJournal* journal = nullptr; ///< keeps every step, and has those of an earlier run
 };
 
 /// How a minimisation went.

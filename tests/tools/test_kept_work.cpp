@@ -1,4 +1,4 @@
-// Long work other than renders: measurements by the walk, cells of studies and methods that
+// Long work other than renders: measurements by the walk, fits, cells of studies and methods that
 // are interrupted and go on.
 #include "tests/tools/program_runner.h"
 
@@ -46,6 +46,29 @@ TEST_F(KeptWork, WalkThatWasInterruptedEndsAsIfItHadNotBeen) {
     expect_failure(2, work + " --resume", "the checkpoint is of other work: the material is");
     put("walk.csv.checkpoint", kept.substr(0, kept.size() / 2));
     expect_failure(2, work + " --resume", "walk.csv.checkpoint: is no whole checkpoint");
+}
+
+TEST_F(KeptWork, FitThatWasInterruptedEndsAsIfItHadNotBeen) {
+    put("recipe.toml", file_bytes(RERADIANT_SOURCE_DIR "/tools/examples/synth-orange.toml"));
+    ASSERT_EQ(run("synth recipe.toml -o data.csv --seed 1").exit_code, 0);
+    const std::string work = "fit data.csv -o matrix.csv --model matrix --json ";
+    ASSERT_EQ(run(work + "whole.json").exit_code, 0);
+    const std::string whole = file_bytes(folder / "matrix.csv");
+    std::filesystem::remove(folder / "matrix.csv");
+    ASSERT_EQ(run_until("matrix.csv.checkpoint", work + "part.json --checkpoint 1e-6"), 130);
+    EXPECT_FALSE(std::filesystem::exists(folder / "matrix.csv"));
+    const std::string kept = file_bytes(folder / "matrix.csv.checkpoint");
+    const ProgramResult resumed = run(work + "resumed.json --resume");
+    ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
+    EXPECT_EQ(file_bytes(folder / "matrix.csv"), whole);
+    const auto of = [&](const char* file, const char* key) {
+        return nlohmann::json::parse(file_bytes(folder / file)).at(key);
+    };
+    EXPECT_EQ(of("resumed.json", "iterations"), of("whole.json", "iterations"));
+    EXPECT_EQ(of("resumed.json", "kkt"), of("whole.json", "kkt"));
+    put("matrix.csv.checkpoint", kept);
+    expect_failure(2, "fit data.csv -o matrix.csv --model factors --resume",
+                   "the model is factors, not matrix");
 }
 
 TEST_F(KeptWork, CellOfAStudyGoesOnFromItsOwnRender) {

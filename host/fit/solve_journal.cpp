@@ -1,0 +1,92 @@
+#include "host/fit/solve_journal.h"
+
+#include "host/error.h"
+
+#include <utility>
+
+namespace reradiant {
+
+namespace {
+
+using Json = nlohmann::json;
+
+Json vector_json(const Eigen::VectorXd& values) {
+    return std::vector<double>(values.begin(), values.end());
+}
+Eigen::VectorXd vector_from(const Json& json) {
+    const auto values = json.get<std::vector<double>>();
+    return Eigen::Map<const Eigen::VectorXd>(values.data(),
+                                             static_cast<Eigen::Index>(values.size()));
+}
+
+Json state_json(const SolveState& state) {
+    const SolveTrace& trace = state.trace;
+    return {{"start", vector_json(state.start)},
+            {"parameters", vector_json(state.parameters)},
+            {"cost", trace.cost},
+            {"seconds_at", trace.seconds},
+            {"iterations", trace.iterations},
+            {"kkt", trace.kkt},
+            {"converged", trace.converged},
+            {"stop_reason", trace.stop_reason},
+            {"damping", state.damping},
+            {"damping_growth", state.damping_growth},
+            {"seconds", state.seconds},
+            {"idle_steps", state.idle_steps},
+            {"is_done", state.is_done}};
+}
+
+SolveState state_from(const Json& json) {
+    SolveState state;
+    state.start = vector_from(json.at("start"));
+    state.parameters = vector_from(json.at("parameters"));
+    json.at("cost").get_to(state.trace.cost);
+    json.at("seconds_at").get_to(state.trace.seconds);
+    json.at("iterations").get_to(state.trace.iterations);
+    json.at("kkt").get_to(state.trace.kkt);
+    json.at("converged").get_to(state.trace.converged);
+    json.at("stop_reason").get_to(state.trace.stop_reason);
+    json.at("damping").get_to(state.damping);
+    json.at("damping_growth").get_to(state.damping_growth);
+    json.at("seconds").get_to(state.seconds);
+    json.at("idle_steps").get_to(state.idle_steps);
+    json.at("is_done").get_to(state.is_done);
+    return state;
+}
+
+} // namespace
+
+SolveJournal::SolveJournal(const Json& json) {
+    try {
+        for (const Json& one : json) {
+            solves_.push_back(state_from(one));
+            earlier_steps_ += solves_.back().trace.iterations;
+        }
+    } catch (const Json::exception& error) {
+        throw_runtime_error(std::string("the steps to go on from are damaged: ") + error.what());
+    }
+}
+
+Json SolveJournal::json() const {
+    Json list = Json::array();
+    for (const SolveState& state : solves_)
+        list.push_back(state_json(state));
+    return list;
+}
+
+SolveState SolveJournal::begin(const Eigen::VectorXd& start) {
+    if (begun_ == solves_.size())
+        solves_.push_back({start, start, {}, 0.0, 0.0, 0.0, 0, false});
+    const SolveState& state = solves_[begun_++];
+    if (state.start.size() != start.size() || (state.start.array() != start.array()).any())
+        throw_runtime_error("the steps to go on from are those of another fit");
+    return state;
+}
+
+void SolveJournal::note(SolveState state) {
+    solves_[begun_ - 1] = std::move(state);
+    if (after_step)
+        after_step();
+}
+
+} // namespace reradiant
