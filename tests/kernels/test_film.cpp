@@ -40,8 +40,8 @@ public:
         const DeviceArray<float> weights(device(), std::span<const float>(ones));
         Kernel kernel(program_, "film", 8);
         kernel.bind(sums.buffer(), statistics.buffer(), in.buffer(), path.buffer(), bands.buffer(),
-                    weights.buffer(), weights.buffer(), cl_uint{0},
-                    static_cast<cl_uint>(paths), cl_uint{1});
+                    weights.buffer(), weights.buffer(), cl_uint{0}, static_cast<cl_uint>(paths),
+                    cl_uint{1});
         kernel.launch(device(), 1);
         const auto mapped = sums.map(CL_MAP_READ, 0, rows * lanes);
         sums_.assign(mapped.span().begin(), mapped.span().end());
