@@ -51,7 +51,7 @@ TEST_F(KeptWork, WalkThatWasInterruptedEndsAsIfItHadNotBeen) {
 TEST_F(KeptWork, FitThatWasInterruptedEndsAsIfItHadNotBeen) {
     put("recipe.toml", file_bytes(RERADIANT_SOURCE_DIR "/tools/examples/synth-orange.toml"));
     ASSERT_EQ(run("synth recipe.toml -o data.csv --seed 1").exit_code, 0);
-    const std::string work = "fit data.csv -o matrix.csv --model matrix --json ";
+    const std::string work = "fit data.csv -o matrix.csv --model factors --rank 3 --json ";
     ASSERT_EQ(run(work + "whole.json").exit_code, 0);
     const std::string whole = file_bytes(folder / "matrix.csv");
     std::filesystem::remove(folder / "matrix.csv");
@@ -67,8 +67,8 @@ TEST_F(KeptWork, FitThatWasInterruptedEndsAsIfItHadNotBeen) {
     EXPECT_EQ(of("resumed.json", "iterations"), of("whole.json", "iterations"));
     EXPECT_EQ(of("resumed.json", "kkt"), of("whole.json", "kkt"));
     put("matrix.csv.checkpoint", kept);
-    expect_failure(2, "fit data.csv -o matrix.csv --model factors --resume",
-                   "the model is factors, not matrix");
+    expect_failure(2, "fit data.csv -o matrix.csv --model matrix --resume",
+                   "the model is matrix, not factors");
 }
 
 TEST_F(KeptWork, CellOfAStudyGoesOnFromItsOwnRender) {
