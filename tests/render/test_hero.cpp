@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <string_view>
 
 namespace reradiant {
 namespace {
@@ -146,6 +147,9 @@ TEST(Hero, AgreesWithTheCombInTheExamples) {
                              "fluorescent-smooth", "fluorescent-smooth-405", "fluorescent-rough",
                              "fluorescent-rough-405", "uv-only", "presets"}) {
         Case one{name, load_scene(folder / (std::string(name) + ".toml"))};
+        // `auto` walks through some of these for comb, which hero cannot: one model for both.
+        if (std::string_view(name) == "presets")
+            one.model = Model::WeidlichWilkie;
         one.scene.film.width = 32;
         one.scene.film.height = 24;
         expect_agreement(one, 4, 512);
