@@ -38,9 +38,11 @@ double needed_numbers(const FittedCandidate& candidate) {
 
 class FactorFitter {
 public:
-    FactorFitter(const FitTarget& target, const FitSettings& settings, Evidence evidence,
-                 Clock::time_point begin)
-        : target_(target), settings_(settings), evidence_(evidence), begin_(begin) {}
+    FactorFitter(const FitTarget& target, const FitSettings& settings, Clock::time_point begin)
+        : target_(target), settings_(settings), begin_(begin) {}
+
+    /// From now on; lines to begin with.
+    void set_bend_width(double width) { bend_width_ = width; }
 
     FittedCandidate fit(int rank, const CurveBases& bases,
                         const std::vector<FactorCurves>& starts) {
@@ -101,7 +103,7 @@ private:
         FittedCandidate candidate;
         candidate.penalty = std::make_unique<PhotonPenalty>(target_.value.cols());
         auto model = std::make_unique<FactorModel>(target_, rank, emission, excitation,
-                                                   *candidate.penalty, settings_.loss);
+                                                   *candidate.penalty, settings_.loss, bend_width_);
         Eigen::VectorXd parameters =
             model->parameters(coefficients_near(emission, start.emission),
                               coefficients_near(excitation, start.excitation));
@@ -115,9 +117,6 @@ private:
             candidate.fit.parameters = model->parameters(curves.emission, curves.excitation);
         }
         candidate.model = std::move(model);
-        const auto numbers = static_cast<Eigen::Index>(needed_numbers(candidate));
-        candidate.criterion = information_criterion(candidate.fit.chi_squared, numbers,
-                                                    target_.used_count(), evidence_);
         candidate.spacing_nm = emission.spacing_nm;
         candidate.emission_knots = emission.knots;
         candidate.excitation_knots = excitation.knots;
@@ -126,8 +125,8 @@ private:
 
     const FitTarget& target_;
     const FitSettings& settings_;
-    Evidence evidence_;
     Clock::time_point begin_;
+    double bend_width_ = FactorModel::bend_of_lines;
 };
 
 /// Whether smooth curves lose no more than fewer numbers must. Schwarz's criterion would take
@@ -155,29 +154,57 @@ FactorCurves curves_of(const FittedCandidate& candidate) {
     return candidate.model->curves(candidate.fit.parameters);
 }
 
+/// Terms are added while the evidence for them is very strong: a Bayes factor of more than e^5
+/// (Kass and Raftery 1995). The width of the prior of a term's bends is chosen by evidence, too.
+FittedCandidate by_evidence(const FitTarget& target, FactorFitter& fitter, const CurveBases& bases,
+                            Evidence evidence) {
+    constexpr double very_strong = 10.0;
+    constexpr double wider[] = {2.0 * FactorModel::bend_of_bands, FactorModel::bend_of_lines};
+    const auto fitted = [&](int rank, double width, const std::vector<FactorCurves>& starts) {
+        fitter.set_bend_width(width);
+        FittedCandidate candidate = fitter.fit(rank, bases, starts);
+        candidate.criterion = laplace_criterion(*candidate.model, candidate.fit, target, evidence);
+        return candidate;
+    };
+    FittedCandidate best = dark_candidate(target, evidence);
+    FactorCurves smaller = fitter.no_curves();
+    double best_width = FactorModel::bend_of_bands;
+    for (int rank = 1; rank <= largest_factor_rank; ++rank) {
+        double width = FactorModel::bend_of_bands;
+        FittedCandidate next = fitted(rank, width, fitter.starts(rank, smaller));
+        for (const double other : wider) {
+            FittedCandidate sharper = fitted(rank, other, {curves_of(next)});
+            if (sharper.fit.trace.converged && sharper.criterion < next.criterion) {
+                next = std::move(sharper);
+                width = other;
+            }
+        }
+        smaller = curves_of(next);
+        if (next.criterion > best.criterion - very_strong)
+            break;
+        best = std::move(next);
+        best_width = width;
+    }
+    fitter.set_bend_width(best_width);
+    return best;
+}
+
 } // namespace
 
 FittedCandidate fit_factors(const FitTarget& target, const FitSettings& settings, Evidence evidence,
                             Clock::time_point begin) {
-    FactorFitter fitter(target, settings, evidence, begin);
+    FactorFitter fitter(target, settings, begin);
     const CurveBases bases = fitter.splines(settings.smooth_nm.value_or(0.0));
     const std::size_t most_bytes =
         settings.most_bytes.value_or(std::numeric_limits<std::size_t>::max());
-    FactorCurves smaller = fitter.no_curves();
     if (settings.rank) {
+        FactorCurves smaller = fitter.no_curves();
         for (int rank = 1; rank < *settings.rank; ++rank)
             smaller = fitter.starts(rank, smaller).front();
         return fitter.within(
             most_bytes, fitter.fit(*settings.rank, bases, fitter.starts(*settings.rank, smaller)));
     }
-    FittedCandidate best = dark_candidate(target, evidence);
-    for (int rank = 1; rank <= largest_factor_rank; ++rank) {
-        FittedCandidate next = fitter.fit(rank, bases, fitter.starts(rank, smaller));
-        smaller = curves_of(next);
-        if (next.criterion >= best.criterion)
-            break;
-        best = std::move(next);
-    }
+    FittedCandidate best = by_evidence(target, fitter, bases, evidence);
     if (!best.model || settings.smooth_nm || settings.most_bytes)
         return fitter.within(most_bytes, std::move(best));
     const FactorCurves start = curves_of(best);

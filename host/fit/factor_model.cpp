@@ -6,7 +6,9 @@
 #include <ceres/problem.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace reradiant {
@@ -134,6 +136,8 @@ private:
 /// term emits, a prior of this width keeps it from growing without bound. In all it adds about 2
 /// to the chi squared.
 constexpr double prior_width = 10.0;
+/// Of a second difference.
+constexpr std::array bend_weights = {1.0, -2.0, 1.0};
 
 /// coefficient / prior_width for the K coefficients of a block.
 class CoefficientPrior final : public ceres::CostFunction {
@@ -156,15 +160,49 @@ private:
     int rank_;
 };
 
+/// (a - 2 b + c) / width for the K coefficients of three neighbouring blocks.
+class BendPrior final : public ceres::CostFunction {
+public:
+    BendPrior(int rank, double width) : rank_(rank), width_(width) {
+        set_num_residuals(rank);
+        mutable_parameter_block_sizes()->assign(bend_weights.size(), rank);
+    }
+    bool Evaluate(double const* const* parameters, double* residuals,
+                  double** jacobians) const override {
+        Eigen::Map<Vector> bend(residuals, rank_);
+        bend.setZero();
+        for (std::size_t b = 0; b < bend_weights.size(); ++b) {
+            const double weight = bend_weights[b] / width_;
+            bend += weight * Eigen::Map<const Vector>(parameters[b], rank_);
+            if (jacobians != nullptr && jacobians[b] != nullptr)
+                Eigen::Map<Matrix>(jacobians[b], rank_, rank_) =
+                    weight * Matrix::Identity(rank_, rank_);
+        }
+        return true;
+    }
+
+private:
+    int rank_;
+    double width_;
+};
+
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 } // namespace
 
 FactorModel::FactorModel(const FitTarget& target, int rank, const SmoothBasis& emission,
                          const SmoothBasis& excitation, const PhotonPenalty& penalty,
-                         RobustLoss loss)
+                         RobustLoss loss, double bend_width)
     : target_(target), rank_(rank), emission_(emission), excitation_(excitation), penalty_(penalty),
-      loss_(loss) {}
+      loss_(loss), bend_width_(bend_width) {}
+
+std::optional<double> FactorModel::bend_width(const SmoothBasis& basis,
+                                              const WavelengthGrid& grid) const {
+    if (!basis.knots.empty())
+        return std::nullopt;
+    const double steps = basis.is_per_band() ? 1.0 : basis.spacing_nm / grid.step_nm;
+    return bend_width_ * steps * steps;
+}
 
 std::vector<int> FactorModel::block_sizes() const {
     return std::vector<int>(static_cast<std::size_t>(emission_.size() + excitation_.size()), rank_);
@@ -178,6 +216,15 @@ void FactorModel::add_residuals(ceres::Problem& problem, const std::vector<doubl
     };
     for (double* const block : blocks)
         problem.AddResidualBlock(new CoefficientPrior(rank_), nullptr, block);
+    std::size_t first = 0;
+    for (const auto& [basis, grid] : bases()) {
+        const auto end = first + static_cast<std::size_t>(basis.size());
+        if (const auto width = bend_width(basis, grid))
+            for (std::size_t b = first; b + 2 < end; ++b)
+                problem.AddResidualBlock(new BendPrior(rank_, *width), nullptr, blocks[b],
+                                         blocks[b + 1], blocks[b + 2]);
+        first = end;
+    }
     ceres::LossFunction* const loss = make_loss(loss_);
     for (Eigen::Index i = 0; i < target_.value.cols(); ++i) {
         const Support x = support_at(excitation_, i);
@@ -204,8 +251,20 @@ void FactorModel::add_residuals(ceres::Problem& problem, const std::vector<doubl
 }
 
 Matrix FactorModel::prior_jacobian() const {
-    const Eigen::Index count = (emission_.size() + excitation_.size()) * rank_;
-    return Matrix::Identity(count, count) / prior_width;
+    const Eigen::Index functions = emission_.size() + excitation_.size(), count = functions * rank_;
+    Matrix prior = Matrix::Zero(2 * count, count);
+    prior.diagonal().setConstant(1.0 / prior_width);
+    Eigen::Index first = 0;
+    for (const auto& [basis, grid] : bases()) {
+        const Eigen::Index end = first + basis.size() * rank_;
+        if (const auto width = bend_width(basis, grid))
+            for (Eigen::Index k = first; k + 2 * rank_ < end; ++k)
+                for (std::size_t b = 0; b < bend_weights.size(); ++b)
+                    prior(count + k, k + static_cast<Eigen::Index>(b) * rank_) =
+                        bend_weights[b] / *width;
+        first = end;
+    }
+    return prior;
 }
 
 std::size_t FactorModel::stored_numbers() const {

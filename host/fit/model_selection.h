@@ -20,6 +20,14 @@ enum class Evidence {
 double information_criterion(double chi_squared, Eigen::Index parameters, Eigen::Index data,
                              Evidence evidence);
 
+/// -2 log evidence of a model with a proper prior, up to a constant of the data (Laplace's method:
+/// MacKay 1992, Neural Computation 4, 415): misfit as above plus the prior's, plus the logarithm of
+/// how much narrower the posterior is than the prior. A parameter at zero that is pushed against it
+/// by a slope g has the integral of exp(-g x - h x^2 / 2) over x > 0 for its width. Lower is
+/// better.
+double laplace_criterion(const TermModel& model, const ModelFit& fit, const FitTarget& target,
+                         Evidence evidence);
+
 /// A model after its fit. A null model stands for no fluorescence.
 struct FittedCandidate {
     std::unique_ptr<PhotonPenalty> penalty; ///< the model refers to it

@@ -27,7 +27,8 @@ TEST(Factors, EntryJacobianIsThatOfTheMatrix) {
     target.allowed = allowed_entries(target.emission, target.excitation, false);
     const PhotonPenalty penalty(49);
     const FactorModel model(target, 2, spline_basis(target.emission, 25.0),
-                            spline_basis(target.excitation, 25.0), penalty, RobustLoss::None);
+                            spline_basis(target.excitation, 25.0), penalty, RobustLoss::None,
+                            FactorModel::bend_of_lines);
     std::mt19937 random(1);
     Eigen::VectorXd p(static_cast<Eigen::Index>(model.stored_numbers()));
     for (double& number : p)

@@ -46,18 +46,20 @@ TableLine recover(const RecoveryCase& what, const TableOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     const FitResult fit = fit_reradiation(data.data, settings);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    return {what, fit.rank, recovery_error(synth_truth(recipe), fit.matrix, fit.sigma),
+    return {what, fit.rank,
+            recovery_error(synth_truth(recipe), fit.matrix, fit.sigma, settings.stack.has_value()),
             seconds.count(), fit.failure};
 }
 
 void print_line(const TableLine& line) {
     const RecoveryCase& what = line.what;
-    fmt::print("| {} | {} | {} | {} | {} | {:.3f} | {:.2f} | {:.1f} | {:+.2f} | {:.1f} | {} |\n",
-               recovery_stack_name(what.stack), what.step_nm, what.fluorophores, line.rank,
-               100.0 * what.noise_of_peak, 100.0 * line.error.rmse_of_peak,
-               line.error.rmse_of_peak / what.noise_of_peak, 100.0 * line.error.coverage,
-               100.0 * line.error.quantum_yield, line.seconds,
-               line.failure.empty() ? "" : line.failure);
+    fmt::print(
+        "| {} | {} | {} | {} | {} | {:.3f} | {:.2f} | {:.2f} | {:.1f} | {:+.2f} | {:.1f} | {} |\n",
+        recovery_stack_name(what.stack), what.step_nm, what.fluorophores, line.rank,
+        100.0 * what.noise_of_peak, 100.0 * line.error.rmse_of_peak,
+        line.error.rmse_of_peak / what.noise_of_peak,
+        line.error.guessed_rmse_of_peak / what.noise_of_peak, 100.0 * line.error.coverage,
+        100.0 * line.error.quantum_yield, line.seconds, line.failure.empty() ? "" : line.failure);
     std::fflush(stdout);
 }
 
@@ -92,8 +94,8 @@ int print_summary(const std::vector<TableLine>& lines) {
 int run(const TableOptions& options) {
     fmt::print(
         "| stack | step nm | K | K found | noise % of peak | RMSE % of peak | RMSE / noise | "
-        "coverage % | quantum yield error % | s | failure |\n"
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+        "the same, guessed | coverage % | quantum yield error % | s | failure |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     std::fflush(stdout);
     std::vector<TableLine> lines;
     for (const RecoveryCase& what : cases_of(options)) {

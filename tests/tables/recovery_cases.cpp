@@ -108,25 +108,28 @@ SynthRecipe recovery_recipe(const RecoveryCase& wanted) {
 }
 
 RecoveryError recovery_error(const ReradiationMatrix& truth, const ReradiationMatrix& fitted,
-                             const Eigen::MatrixXd& sigma) {
+                             const Eigen::MatrixXd& sigma, bool was_covered) {
     constexpr double seen_of_peak = 0.01, normal_quantile_95 = 1.96;
     const double peak = truth.fluorescent_part().maxCoeff();
     double squares = 0.0, entries = 0.0, large = 0.0, covered = 0.0;
+    double guessed_squares = 0.0, guessed_entries = 0.0;
     for (int i = 0; i < truth.excitation.count; ++i)
         for (int o = 0; o < truth.emission.count; ++o) {
             if (!(truth.emission.centre_nm(o) > truth.excitation.centre_nm(i)))
                 continue;
             const double error = fitted.values(o, i) - truth.values(o, i);
-            squares += error * error;
-            entries += 1.0;
+            const bool is_guessed = was_covered && diagonal_row(truth, i) < 0;
+            (is_guessed ? guessed_squares : squares) += error * error;
+            (is_guessed ? guessed_entries : entries) += 1.0;
             if (truth.values(o, i) < seen_of_peak * peak)
                 continue;
             large += 1.0;
             covered += std::abs(error) <= normal_quantile_95 * sigma(o, i) ? 1.0 : 0.0;
         }
     const double yield = overall_quantum_yield(truth);
-    return {std::sqrt(squares / entries) / peak, covered / large,
-            (overall_quantum_yield(fitted) - yield) / yield};
+    return {std::sqrt(squares / entries) / peak,
+            guessed_entries > 0.0 ? std::sqrt(guessed_squares / guessed_entries) / peak : 0.0,
+            covered / large, (overall_quantum_yield(fitted) - yield) / yield};
 }
 
 } // namespace reradiant

@@ -23,7 +23,10 @@ SynthRecipe recovery_recipe(const RecoveryCase& wanted);
 
 /// How far a matrix is from the truth, over the entries with emission > excitation.
 struct RecoveryError {
-    double rmse_of_peak = 0.0; ///< root mean square error, in units of the truth's peak
+    /// Root mean square error, in units of the truth's peak; `guessed`: of excitation bands under a
+    /// stack whose reflectance no emission band measures, which their interreflections need. What
+    /// they scale by no data can tell.
+    double rmse_of_peak = 0.0, guessed_rmse_of_peak = 0.0;
     /// Share of the entries of at least 1 % of the peak whose truth lies within value +- 1.96
     /// sigma.
     double coverage = 0.0;
@@ -32,6 +35,6 @@ struct RecoveryError {
     double quantum_yield = 0.0;
 };
 RecoveryError recovery_error(const ReradiationMatrix& truth, const ReradiationMatrix& fitted,
-                             const Eigen::MatrixXd& sigma);
+                             const Eigen::MatrixXd& sigma, bool was_covered);
 
 } // namespace reradiant
