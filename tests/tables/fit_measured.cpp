@@ -4,6 +4,7 @@
 //     table_fit_measured [FOLDER]
 
 #include "host/atomic_file.h"
+#include "host/error.h"
 #include "host/fit/fit.h"
 #include "host/report/svg.h"
 
@@ -90,9 +91,7 @@ void write_curves(const std::filesystem::path& folder, const std::vector<Row>& r
                           svg::line_plot(axes, series));
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
     const std::filesystem::path data =
         std::filesystem::path(RERADIANT_SOURCE_DIR) / ".." / "shared" / "data" / "bfc";
     if (!std::filesystem::exists(data)) {
@@ -112,4 +111,15 @@ int main(int argc, char** argv) {
             write_curves(argv[1], rows);
     }
     return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const Error& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return error.exit_code();
+    }
 }
