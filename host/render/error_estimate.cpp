@@ -2,6 +2,7 @@
 
 #include "host/render/film_pixels.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -35,15 +36,19 @@ double mean_radiance(FilmSums film, const FilmLayout& layout, int bands) {
     return std::accumulate(parts.begin(), parts.end(), 0.0) / (static_cast<double>(pixels) * bands);
 }
 
-/// d^2 / (value^2 + floor) of one pixel, added over its bands.
+/// d^2 / (halves' product + floor) of one pixel, added over its bands. The product has the square
+/// of the truth as expectation. The square of the mean has more, most where one sample makes the
+/// error large: that sample would count in both, and the error of a noisy image come out too low.
 double squared_error(const PixelSums& sums, double n, const FilmLayout& layout,
                      std::uint32_t samples, double floor) {
     double total = 0.0;
     for (std::size_t b = 0; b < sums.sum.size() && n > 0.0; ++b) {
         const double value = sums.sum[b] / n;
         const double d = half_difference(sums, layout, b, n, samples);
-        if (value * value + floor > 0.0)
-            total += d * d / (value * value + floor);
+        // with an odd count `d` is not bounded by the value
+        const double square = std::max(0.0, value * value - d * d) + floor;
+        if (square > 0.0)
+            total += d * d / square;
     }
     return total;
 }
