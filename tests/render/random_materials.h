@@ -37,11 +37,16 @@ public:
 private:
     Layer random_layer() {
         const bool is_rough = chance(0.3);
-        Layer result = layer(edge_or_between({1.0, 1.000001, 1.0001, 1.5, 2.4, 4.0}), 0.0,
+        Layer result = layer(pooled(64, {1.0, 1.000001, 1.0001, 1.5, 2.4, 4.0}), 0.0,
                              chance(0.5) ? 0.0 : edge_or_between({0.0, 1e-8, 1e-3, 1.0, 1e4}));
         if (is_rough)
             make_rough(result, integer(interfaces_));
         return result;
+    }
+    /// One of `count` numbers: tables that facets need are kept, and take some hundredths of a
+    /// second for every new roughness and ratio of IORs.
+    double pooled(int count, const std::vector<double>& edges) {
+        return RandomMaterials(static_cast<unsigned>(integer(count)), 1).edge_or_between(edges);
     }
     static void make_rough(Layer& layer, int interface) {
         std::mt19937_64 engine(static_cast<unsigned>(interface));
@@ -62,7 +67,7 @@ private:
             result.type = SubstrateType::Conductor;
             result.conductor.ior = Spectrum::constant(edge_or_between({0.05, 0.3, 1.5, 4.0}));
             result.conductor.kappa = Spectrum::constant(edge_or_between({1e-6, 0.5, 3.0, 10.0}));
-            result.conductor.alpha = chance(0.5) ? 0.0 : edge_or_between({0.001, 0.02, 0.3, 1.0});
+            result.conductor.alpha = chance(0.5) ? 0.0 : pooled(256, {0.001, 0.02, 0.3, 1.0});
         } else if (type == 2) {
             result.matrix = shifted_matrix();
             result.matrix->values *= uniform(0.0, 1.0);
