@@ -43,6 +43,7 @@ struct FitSettings {
     int starts = 3;                  ///< initial guesses that are tried
     SolverSettings solver;
     unsigned seed = 0; ///< of the random starts
+    int threads = 0;   ///< 0: all; the result is the same with any number
 };
 
 /// Photons emitted over photons absorbed (1 - diagonal), with its 95 % band; NaN: unknown.
