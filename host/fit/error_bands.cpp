@@ -122,27 +122,44 @@ int determined_count(const Vector& singular_values) {
     return static_cast<int>((singular_values.array() > determined * singular_values(0)).count());
 }
 
-/// covariance_of with a prior that every parameter has, so that all are determined: root = inverse
-/// of the triangle. `free` and `rank` are of the data alone.
-Covariance posterior_covariance(const Matrix& jacobian, const Matrix& prior,
-                                const std::vector<bool>& held, double variance) {
-    const FreeColumns data(jacobian, held);
-    Covariance result;
-    result.free = static_cast<int>(data.free.size());
-    Matrix both(result.free + prior.rows(), jacobian.cols());
-    both.bottomRows(prior.rows()) = std::sqrt(variance) * prior;
-    if (result.free > 0) {
-        result.rank = determined_count(Eigen::BDCSVD<Matrix>(data.triangle).singularValues());
-        both.topRows(result.free) =
-            data.all_rows((data.triangle * data.lengths.asDiagonal()).transpose()).transpose();
+/// covariance_of data with a prior that every parameter has, so that all are determined: root =
+/// inverse of the triangle. `free` and `rank` are of the data alone.
+class Posterior {
+public:
+    Posterior(const Matrix& jacobian, const Matrix& prior, const std::vector<bool>& held)
+        : data_(jacobian, held), prior_(prior), held_(held),
+          rows_((data_.triangle * data_.lengths.asDiagonal()).transpose()) {}
+
+    Covariance covariance(double variance) const {
+        Covariance result;
+        result.free = static_cast<int>(data_.free.size());
+        if (result.free > 0)
+            result.rank = determined_count(Eigen::BDCSVD<Matrix>(data_.triangle).singularValues());
+        result.root = root(variance);
+        return result;
     }
-    const FreeColumns all(both, held);
-    const auto count = static_cast<Eigen::Index>(all.free.size());
-    const Matrix inverse = all.triangle.triangularView<Eigen::Upper>().solve(
-        Matrix(std::sqrt(variance) * Matrix::Identity(count, count)));
-    result.root = all.all_rows(all.lengths.cwiseInverse().asDiagonal() * inverse);
-    return result;
-}
+
+    /// Numbers that the data determine rather than the prior (MacKay 1992): trace of C J^T J.
+    double effective_numbers(double variance) const {
+        return (data_.all_rows(rows_).transpose() * root(variance)).squaredNorm() / variance;
+    }
+
+private:
+    Matrix root(double variance) const {
+        Matrix both(rows_.cols() + prior_.rows(), prior_.cols());
+        both << data_.all_rows(rows_).transpose(), std::sqrt(variance) * prior_;
+        const FreeColumns all(both, held_);
+        const auto count = static_cast<Eigen::Index>(all.free.size());
+        const Matrix inverse = all.triangle.triangularView<Eigen::Upper>().solve(
+            Matrix(std::sqrt(variance) * Matrix::Identity(count, count)));
+        return all.all_rows(all.lengths.cwiseInverse().asDiagonal() * inverse);
+    }
+
+    FreeColumns data_;
+    const Matrix& prior_;
+    const std::vector<bool>& held_;
+    Matrix rows_; ///< transposed triangle of the data's free columns, not scaled
+};
 
 /// The curves normalised as FitResult has them, stacked into one vector: emission, then excitation.
 Vector stacked(const FactorCurves& curves, const FitTarget& target) {
@@ -192,17 +209,28 @@ Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitT
     const Matrix jacobian = data_jacobian(entries, weights, target, penalty);
     const Vector seen = seen_residuals(residual, weights, target, jacobian.rows());
     const double used = (target.weight.array() > 0.0).cast<double>().sum();
-    const double freedom =
-        std::max(1.0, used - static_cast<double>((fit.parameters.array() > 0.0).count()));
-    const double reduced = seen.squaredNorm() / freedom;
-    const double variance = noise_is_estimated ? reduced : std::max(1.0, reduced);
     const std::vector<bool> held =
         firmly_at_zero(model, fit.parameters, jacobian.transpose() * seen, jacobian);
     const Matrix prior = model.prior_jacobian();
-    Covariance covariance = prior.rows() > 0 ? posterior_covariance(jacobian, prior, held, variance)
-                                             : covariance_of(jacobian, held, variance);
+    const auto reduced = [&](double numbers) {
+        return seen.squaredNorm() / std::max(1.0, used - numbers);
+    };
+    const auto variance_of = [&](double numbers) {
+        return noise_is_estimated ? reduced(numbers) : std::max(1.0, reduced(numbers));
+    };
+    double numbers = static_cast<double>((fit.parameters.array() > 0.0).count());
+    Covariance covariance;
+    if (prior.rows() > 0) {
+        const Posterior posterior(jacobian, prior, held);
+        numbers = posterior.effective_numbers(noise_is_estimated ? reduced(numbers) : 1.0);
+        covariance = posterior.covariance(variance_of(numbers));
+    } else {
+        covariance = covariance_of(jacobian, held, variance_of(numbers));
+    }
+    covariance.effective = numbers;
     if (errors != nullptr)
-        share_errors(entries, weights, prior, *errors, 1.0 / target.scale, variance, covariance);
+        share_errors(entries, weights, prior, *errors, 1.0 / target.scale, variance_of(numbers),
+                     covariance);
     return covariance;
 }
 

@@ -31,11 +31,9 @@ struct CurveBases {
     SmoothBasis emission, excitation;
 };
 
-/// One number a term is only a choice of unit; numbers at zero were not needed.
-double needed_numbers(const FittedCandidate& candidate) {
-    return static_cast<double>((candidate.fit.parameters.array() > 0.0).count()) -
-           candidate.model->terms();
-}
+/// Evidence that more terms or a coarser basis must have: a Bayes factor of more than e^5, very
+/// strong (Kass and Raftery 1995).
+constexpr double very_strong = 10.0;
 
 /// One minimisation from one start.
 struct FactorTask {
@@ -148,11 +146,6 @@ private:
         candidate.fit =
             minimise_within_budget(*model, target_, *candidate.penalty, parameters, solver, begin_);
         model->balance(candidate.fit.parameters);
-        if (emission.is_per_band() && excitation.is_per_band()) {
-            FactorCurves curves = model->curves(candidate.fit.parameters);
-            bridge_hidden_bands(target_, curves);
-            candidate.fit.parameters = model->parameters(curves.emission, curves.excitation);
-        }
         candidate.model = std::move(model);
         candidate.spacing_nm = emission.spacing_nm;
         candidate.emission_knots = emission.knots;
@@ -163,27 +156,6 @@ private:
     const FitTarget& target_;
     const FitSettings& settings_;
     Clock::time_point begin_;
-};
-
-/// Whether smooth curves lose no more than fewer numbers must. Schwarz's criterion would take
-/// splines that bend less than the truth, whose bands then hold 80 % of it instead of 95.
-class Smoothing {
-public:
-    Smoothing(const FittedCandidate& rough, Eigen::Index data, Evidence evidence)
-        : chi_squared_(rough.fit.chi_squared), numbers_(needed_numbers(rough)) {
-        const double freedom = std::max(1.0, static_cast<double>(data) - numbers_);
-        variance_ = evidence == Evidence::KnownNoise ? 1.0 : chi_squared_ / freedom;
-    }
-    /// Chi squared may rise as one of that many degrees of freedom: by their number, give or take
-    /// two standard deviations.
-    bool may_be(const FittedCandidate& smooth) const {
-        const double fewer = std::max(0.0, numbers_ - needed_numbers(smooth));
-        return smooth.fit.chi_squared - chi_squared_ <=
-               variance_ * (fewer + 2.0 * std::sqrt(2.0 * fewer));
-    }
-
-private:
-    double chi_squared_, numbers_, variance_ = 1.0;
 };
 
 FactorCurves curves_of(const FittedCandidate& candidate) {
@@ -218,11 +190,10 @@ ChosenFit by_width(const FitTarget& target, const FactorFitter& fitter, const Cu
     return best;
 }
 
-/// Terms are added while the evidence for them is very strong: a Bayes factor of more than e^5
-/// (Kass and Raftery 1995). The width of the prior of a term's bends is chosen by evidence, too.
+/// Terms are added while the evidence for them is very strong. The width of the prior of a term's
+/// bends is chosen by evidence, too.
 ChosenFit by_evidence(const FitTarget& target, const FactorFitter& fitter, const CurveBases& bases,
                       Evidence evidence) {
-    constexpr double very_strong = 10.0;
     ChosenFit best{dark_candidate(target, evidence), FactorModel::bend_of_bands};
     FactorCurves smaller = fitter.no_curves();
     for (int rank = 1; rank <= largest_factor_rank; ++rank) {
@@ -235,11 +206,12 @@ ChosenFit by_evidence(const FitTarget& target, const FactorFitter& fitter, const
     return best;
 }
 
-/// The smoothest curves that lose no more than they must, of fits that start from a rough one.
+/// The fit with splines where the evidence for them is very strong, and so for every coarser basis
+/// against the finer one: what a basis cannot bend to is not in the error bands, which for splines
+/// of 30 nm hold 80 % of the truth at 5 % noise, where the criterion hardly tells them apart.
 FittedCandidate smoothest(const FitTarget& target, const FactorFitter& fitter, Evidence evidence,
                           ChosenFit rough) {
     const FactorCurves start = curves_of(rough.candidate);
-    const Smoothing smoothing(rough.candidate, target.used_count(), evidence);
     std::vector<CurveBases> bases;
     std::vector<FactorTask> tasks;
     for (const double steps : spacings_in_steps)
@@ -247,10 +219,23 @@ FittedCandidate smoothest(const FitTarget& target, const FactorFitter& fitter, E
     for (const CurveBases& splines : bases)
         tasks.push_back({rough.candidate.model->terms(), splines, rough.bend_width, start});
     FittedCandidate best = std::move(rough.candidate);
-    for (FittedCandidate& smooth : fitter.fit_all(tasks, fitter.solver()))
-        if (smooth.fit.trace.converged && smoothing.may_be(smooth))
+    for (FittedCandidate& smooth : fitter.fit_all(tasks, fitter.solver())) {
+        smooth.criterion = laplace_criterion(*smooth.model, smooth.fit, target, evidence);
+        if (smooth.fit.trace.converged && smooth.criterion < best.criterion - very_strong)
             best = std::move(smooth);
+    }
     return best;
+}
+
+/// A fit with values for bands that the data say next to nothing about.
+FittedCandidate bridged(const FitTarget& target, FittedCandidate candidate) {
+    if (!candidate.model || candidate.spacing_nm > 0.0)
+        return candidate;
+    FactorCurves curves = curves_of(candidate);
+    bridge_hidden_bands(target, curves);
+    candidate.fit.parameters =
+        static_cast<FactorModel&>(*candidate.model).parameters(curves.emission, curves.excitation);
+    return candidate;
 }
 
 } // namespace
@@ -265,14 +250,14 @@ FittedCandidate fit_factors(const FitTarget& target, const FitSettings& settings
         FactorCurves smaller = fitter.no_curves();
         for (int rank = 1; rank < *settings.rank; ++rank)
             smaller = fitter.starts(rank, smaller).front();
-        return fitter.within(most_bytes,
-                             fitter.fit(*settings.rank, bases, FactorModel::bend_of_lines,
-                                        fitter.starts(*settings.rank, smaller)));
+        FittedCandidate full = fitter.fit(*settings.rank, bases, FactorModel::bend_of_lines,
+                                          fitter.starts(*settings.rank, smaller));
+        return fitter.within(most_bytes, bridged(target, std::move(full)));
     }
     ChosenFit best = by_evidence(target, fitter, bases, evidence);
     if (!best.candidate.model || settings.smooth_nm || settings.most_bytes)
-        return fitter.within(most_bytes, std::move(best.candidate));
-    return smoothest(target, fitter, evidence, std::move(best));
+        return fitter.within(most_bytes, bridged(target, std::move(best.candidate)));
+    return bridged(target, smoothest(target, fitter, evidence, std::move(best)));
 }
 
 } // namespace reradiant
