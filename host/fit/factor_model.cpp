@@ -140,6 +140,8 @@ private:
 /// term emits, a prior of this width keeps it from growing without bound. In all it adds about 2
 /// to the chi squared.
 constexpr double prior_width = 10.0;
+/// Prior of the second differences of a curve that holds lines of one band, on any grid.
+constexpr double bend_of_a_line = 2.0;
 /// Of a second difference.
 constexpr std::array bend_weights = {1.0, -2.0, 1.0};
 
@@ -204,8 +206,8 @@ std::optional<double> FactorModel::bend_width(const SmoothBasis& basis,
                                               const WavelengthGrid& grid) const {
     if (!basis.knots.empty())
         return std::nullopt;
-    const double steps = basis.is_per_band() ? 1.0 : basis.spacing_nm / grid.step_nm;
-    return bend_width_ * steps * steps;
+    const double spacing_nm = basis.is_per_band() ? grid.step_nm : basis.spacing_nm;
+    return std::min(bend_of_a_line, bend_width_ * std::pow(spacing_nm / bend_step_nm, 2));
 }
 
 std::vector<int> FactorModel::block_sizes() const {
