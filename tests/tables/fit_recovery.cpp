@@ -31,7 +31,7 @@ struct TableOptions {
 
     /// On 5 nm a fit takes ten times as long.
     unsigned data_sets_on(double step_nm) const {
-        return data_sets.value_or(step_nm < 10.0 ? 1u : 8u);
+        return data_sets.value_or(step_nm < 10.0 ? 1u : 4u);
     }
 };
 
@@ -168,7 +168,7 @@ int main(int argc, char** argv) {
     program.add_option("--seed", options.seed, "of the noise of the first data set");
     program
         .add_option("--data-sets", options.data_sets,
-                    "noise of so many seeds, averaged; default: 8 at 10 nm, 1 at 5 nm")
+                    "noise of so many seeds, averaged; default: 4 at 10 nm, 1 at 5 nm")
         ->check(CLI::PositiveNumber);
     CLI11_PARSE(program, argc, argv);
     try {
