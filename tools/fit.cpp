@@ -53,7 +53,7 @@ FitSettings settings_of(const FitOptions& options, const CommonOptions& common) 
     settings.seed = common.seed;
     settings.solver.most_seconds = options.seconds;
     settings.solver.most_iterations = options.iterations;
-    settings.solver.threads = std::max(1, common.threads);
+    settings.threads = common.threads;
     if (!options.stack.empty())
         settings.stack = load_stack(options.stack);
     return settings;
@@ -106,7 +106,6 @@ SampleIdentity fit_identity(const FitOptions& options, const FitSettings& settin
             {"bytes", number(options.bytes)},
             {"anti-stokes", options.anti_stokes ? "on" : "off"},
             {"seed", std::to_string(settings.seed)},
-            {"threads", std::to_string(settings.solver.threads)},
             {"most seconds", fmt::format("{}", options.seconds)},
             {"most iterations", std::to_string(options.iterations)}};
 }
@@ -120,7 +119,7 @@ std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings set
     if (options.resume)
         if (const auto state = kept.read())
             journal = SolveJournal(*state);
-    journal.after_step = [&] { kept.keep_when_due([&] { return journal.json(); }); };
+    journal.set_after_step([&] { kept.keep_when_due([&] { return journal.json(); }); });
     settings.solver.journal = &journal;
     settings.solver.stop = interrupt_flag();
     catch_interrupts();

@@ -22,7 +22,17 @@ Indices indices_of(const std::vector<bool>& free) {
     return indices;
 }
 
-/// Rows and columns of a symmetric matrix.
+/// Rows and columns of a symmetric matrix; of a full one the lower triangle is enough.
+Matrix principal(const Matrix& h, const Indices& indices) {
+    const auto n = static_cast<Eigen::Index>(indices.size());
+    Matrix result(n, n);
+    for (Eigen::Index column = 0; column < n; ++column)
+        for (Eigen::Index row = column; row < n; ++row)
+            result(row, column) = h(indices[static_cast<std::size_t>(row)],
+                                    indices[static_cast<std::size_t>(column)]);
+    return result;
+}
+
 Sparse principal(const Sparse& h, const Indices& indices) {
     std::vector<Eigen::Index> place(static_cast<std::size_t>(h.cols()), -1);
     for (std::size_t k = 0; k < indices.size(); ++k)
@@ -48,18 +58,24 @@ std::optional<Vector> solution(const Factorisation& factors, const Vector& right
     return result.allFinite() ? std::optional(result) : std::nullopt;
 }
 
+std::optional<Vector> solve_positive(Matrix h, const Vector& right) {
+    return solution(Eigen::LLT<Eigen::Ref<Matrix>>(h), right);
+}
+
+std::optional<Vector> solve_positive(const Sparse& h, const Vector& right) {
+    return solution(Eigen::SimplicialLLT<Sparse>(h), right);
+}
+
 /// Minimiser over the free parameters, 0 elsewhere.
-std::optional<Vector> free_minimiser(const Quadratic& quadratic, const Indices& indices,
-                                     bool dense) {
+template <typename Hessian>
+std::optional<Vector> free_minimiser(const Quadratic<Hessian>& quadratic, const Indices& indices) {
     Vector y = Vector::Zero(quadratic.c.size());
     if (indices.empty())
         return y;
     Vector right(static_cast<Eigen::Index>(indices.size()));
     for (std::size_t k = 0; k < indices.size(); ++k)
         right(static_cast<Eigen::Index>(k)) = -quadratic.c(indices[k]);
-    const Sparse h = principal(quadratic.h, indices);
-    const auto solved = dense ? solution(Eigen::LLT<Matrix>(Matrix(h)), right)
-                              : solution(Eigen::SimplicialLLT<Sparse>(h), right);
+    const auto solved = solve_positive(principal(quadratic.h, indices), right);
     if (!solved)
         return std::nullopt;
     for (std::size_t k = 0; k < indices.size(); ++k)
@@ -81,14 +97,15 @@ Indices infeasible(const Vector& y, const Vector& slope, const std::vector<bool>
 
 } // namespace
 
-std::optional<Vector> minimise_quadratic(const Quadratic& quadratic,
-                                         const std::vector<bool>& bounded, bool dense,
+template <typename Hessian>
+std::optional<Vector> minimise_quadratic(const Quadratic<Hessian>& quadratic,
+                                         const std::vector<bool>& bounded,
                                          std::vector<bool>& free) {
     constexpr int most_rounds = 12;
     std::size_t least = free.size() + 1;
     int patience = 3; // full exchanges that may pass without progress
     for (int round = 0; round < most_rounds; ++round) {
-        const auto y = free_minimiser(quadratic, indices_of(free), dense);
+        const auto y = free_minimiser(quadratic, indices_of(free));
         if (!y)
             return std::nullopt;
         const Vector slope = quadratic.h * *y + quadratic.c;
@@ -109,5 +126,10 @@ std::optional<Vector> minimise_quadratic(const Quadratic& quadratic,
     }
     return std::nullopt;
 }
+
+template std::optional<Vector> minimise_quadratic(const Quadratic<Matrix>&,
+                                                  const std::vector<bool>&, std::vector<bool>&);
+template std::optional<Vector> minimise_quadratic(const Quadratic<Sparse>&,
+                                                  const std::vector<bool>&, std::vector<bool>&);
 
 } // namespace reradiant

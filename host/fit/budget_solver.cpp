@@ -9,15 +9,6 @@ namespace {
 constexpr double tolerance = 1e-7;
 constexpr int most_rounds = 40;
 
-void append(SolveTrace& trace, const SolveTrace& more) {
-    trace.cost.insert(trace.cost.end(), more.cost.begin(), more.cost.end());
-    trace.seconds.insert(trace.seconds.end(), more.seconds.begin(), more.seconds.end());
-    trace.iterations += more.iterations;
-    trace.kkt = more.kkt;
-    trace.converged = more.converged;
-    trace.stop_reason = more.stop_reason;
-}
-
 } // namespace
 
 ModelFit minimise_within_budget(const FittedModel& model, const FitTarget& target,
@@ -30,7 +21,7 @@ ModelFit minimise_within_budget(const FittedModel& model, const FitTarget& targe
     const double strength = 10.0 * target.weight.squaredNorm() /
                             static_cast<double>(std::max<Eigen::Index>(1, target.value.cols()));
     for (int round = 0; round < most_rounds; ++round) {
-        append(fit.trace, minimise_non_negative(model, fit.parameters, settings, begin));
+        fit.trace.append(minimise_non_negative(model, fit.parameters, settings, begin));
         const Eigen::VectorXd sums = target.photon_sums(model.matrix(fit.parameters));
         // The tolerance is a share of a photon, which is 1 / scale here.
         if (!penalty.update(sums, target.budget, strength, tolerance / target.scale)) {

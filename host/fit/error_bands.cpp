@@ -82,6 +82,85 @@ std::vector<bool> firmly_at_zero(const TermModel& model, const Vector& parameter
     return held;
 }
 
+/// Columns of a Jacobian that are not held and not zero.
+struct FreeColumns {
+    std::vector<Eigen::Index> free;
+    Vector lengths;
+    Matrix triangle; ///< of a QR decomposition of these columns, scaled to length 1: the same
+                     ///< singular values, but far fewer rows
+
+    FreeColumns(const Matrix& jacobian, const std::vector<bool>& held) : columns_(jacobian.cols()) {
+        for (Eigen::Index k = 0; k < jacobian.cols(); ++k)
+            if (!held[static_cast<std::size_t>(k)] && jacobian.col(k).squaredNorm() > 0.0)
+                free.push_back(k);
+        Matrix scaled = jacobian(Eigen::all, free);
+        lengths = scaled.colwise().norm().transpose();
+        scaled *= lengths.cwiseInverse().asDiagonal();
+        const auto count = static_cast<Eigen::Index>(free.size());
+        triangle = Matrix::Zero(count, count);
+        if (scaled.rows() <= count) {
+            triangle.topRows(scaled.rows()) = scaled;
+            return;
+        }
+        const Eigen::HouseholderQR<Eigen::Ref<Matrix>> qr(scaled);
+        triangle = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+    }
+
+    /// A row for each of these columns put where the column is, zero for the others.
+    Matrix all_rows(const Matrix& rows) const {
+        Matrix all = Matrix::Zero(columns_, rows.cols());
+        for (std::size_t k = 0; k < free.size(); ++k)
+            all.row(free[k]) = rows.row(static_cast<Eigen::Index>(k));
+        return all;
+    }
+
+private:
+    Eigen::Index columns_;
+};
+
+int determined_count(const Vector& singular_values) {
+    return static_cast<int>((singular_values.array() > determined * singular_values(0)).count());
+}
+
+/// covariance_of data with a prior that every parameter has, so that all are determined: root =
+/// inverse of the triangle. `free` and `rank` are of the data alone.
+class Posterior {
+public:
+    Posterior(const Matrix& jacobian, const Matrix& prior, const std::vector<bool>& held)
+        : data_(jacobian, held), prior_(prior), held_(held),
+          rows_((data_.triangle * data_.lengths.asDiagonal()).transpose()) {}
+
+    Covariance covariance(double variance) const {
+        Covariance result;
+        result.free = static_cast<int>(data_.free.size());
+        if (result.free > 0)
+            result.rank = determined_count(Eigen::BDCSVD<Matrix>(data_.triangle).singularValues());
+        result.root = root(variance);
+        return result;
+    }
+
+    /// Numbers that the data determine rather than the prior (MacKay 1992): trace of C J^T J.
+    double effective_numbers(double variance) const {
+        return (data_.all_rows(rows_).transpose() * root(variance)).squaredNorm() / variance;
+    }
+
+private:
+    Matrix root(double variance) const {
+        Matrix both(rows_.cols() + prior_.rows(), prior_.cols());
+        both << data_.all_rows(rows_).transpose(), std::sqrt(variance) * prior_;
+        const FreeColumns all(both, held_);
+        const auto count = static_cast<Eigen::Index>(all.free.size());
+        const Matrix inverse = all.triangle.triangularView<Eigen::Upper>().solve(
+            Matrix(std::sqrt(variance) * Matrix::Identity(count, count)));
+        return all.all_rows(all.lengths.cwiseInverse().asDiagonal() * inverse);
+    }
+
+    FreeColumns data_;
+    const Matrix& prior_;
+    const std::vector<bool>& held_;
+    Matrix rows_; ///< transposed triangle of the data's free columns, not scaled
+};
+
 /// The curves normalised as FitResult has them, stacked into one vector: emission, then excitation.
 Vector stacked(const FactorCurves& curves, const FitTarget& target) {
     const double steps = target.emission.step_nm / target.excitation.step_nm;
@@ -104,34 +183,19 @@ Vector Covariance::sigma(const Matrix& jacobian) const {
 }
 
 Covariance covariance_of(const Matrix& jacobian, const std::vector<bool>& held, double variance) {
-    std::vector<Eigen::Index> free;
-    for (Eigen::Index k = 0; k < jacobian.cols(); ++k)
-        if (!held[static_cast<std::size_t>(k)] && jacobian.col(k).squaredNorm() > 0.0)
-            free.push_back(k);
-    const auto count = static_cast<Eigen::Index>(free.size());
+    const FreeColumns columns(jacobian, held);
+    const auto count = static_cast<Eigen::Index>(columns.free.size());
     Covariance result;
     result.free = static_cast<int>(count);
-    if (count == 0 || jacobian.rows() == 0) {
-        result.root = Matrix::Zero(jacobian.cols(), 0);
+    result.root = Matrix::Zero(jacobian.cols(), 0);
+    if (count == 0 || jacobian.rows() == 0)
         return result;
-    }
-    Matrix scaled = jacobian(Eigen::all, free);
-    const Vector lengths = scaled.colwise().norm().transpose();
-    scaled *= lengths.cwiseInverse().asDiagonal();
-    // The triangle of a QR decomposition has the same singular values, but far fewer rows.
-    if (scaled.rows() > count) {
-        const Eigen::HouseholderQR<Matrix> qr(scaled);
-        scaled = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
-    }
-    const Eigen::BDCSVD<Matrix> svd(scaled, Eigen::ComputeThinV);
+    const Eigen::BDCSVD<Matrix> svd(columns.triangle, Eigen::ComputeThinV);
     const Vector& values = svd.singularValues();
-    result.rank = static_cast<int>((values.array() > determined * values(0)).count());
-    const Matrix part =
-        lengths.cwiseInverse().asDiagonal() * svd.matrixV().leftCols(result.rank) *
-        (std::sqrt(variance) * values.head(result.rank).cwiseInverse()).asDiagonal();
-    result.root = Matrix::Zero(jacobian.cols(), result.rank);
-    for (Eigen::Index k = 0; k < count; ++k)
-        result.root.row(free[static_cast<std::size_t>(k)]) = part.row(k);
+    result.rank = determined_count(values);
+    result.root = columns.all_rows(
+        columns.lengths.cwiseInverse().asDiagonal() * svd.matrixV().leftCols(result.rank) *
+        (std::sqrt(variance) * values.head(result.rank).cwiseInverse()).asDiagonal());
     return result;
 }
 
@@ -145,21 +209,28 @@ Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitT
     const Matrix jacobian = data_jacobian(entries, weights, target, penalty);
     const Vector seen = seen_residuals(residual, weights, target, jacobian.rows());
     const double used = (target.weight.array() > 0.0).cast<double>().sum();
-    const double freedom =
-        std::max(1.0, used - static_cast<double>((fit.parameters.array() > 0.0).count()));
-    const double reduced = seen.squaredNorm() / freedom;
-    const double variance = noise_is_estimated ? reduced : std::max(1.0, reduced);
     const std::vector<bool> held =
         firmly_at_zero(model, fit.parameters, jacobian.transpose() * seen, jacobian);
-    Covariance covariance = covariance_of(jacobian, held, variance);
     const Matrix prior = model.prior_jacobian();
+    const auto reduced = [&](double numbers) {
+        return seen.squaredNorm() / std::max(1.0, used - numbers);
+    };
+    const auto variance_of = [&](double numbers) {
+        return noise_is_estimated ? reduced(numbers) : std::max(1.0, reduced(numbers));
+    };
+    double numbers = static_cast<double>((fit.parameters.array() > 0.0).count());
+    Covariance covariance;
     if (prior.rows() > 0) {
-        Matrix both(jacobian.rows() + prior.rows(), jacobian.cols());
-        both << jacobian, std::sqrt(variance) * prior;
-        covariance.root = covariance_of(both, held, variance).root;
+        const Posterior posterior(jacobian, prior, held);
+        numbers = posterior.effective_numbers(noise_is_estimated ? reduced(numbers) : 1.0);
+        covariance = posterior.covariance(variance_of(numbers));
+    } else {
+        covariance = covariance_of(jacobian, held, variance_of(numbers));
     }
+    covariance.effective = numbers;
     if (errors != nullptr)
-        share_errors(entries, weights, prior, *errors, 1.0 / target.scale, variance, covariance);
+        share_errors(entries, weights, prior, *errors, 1.0 / target.scale, variance_of(numbers),
+                     covariance);
     return covariance;
 }
 

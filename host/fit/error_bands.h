@@ -13,10 +13,10 @@ namespace reradiant {
 
 /// Gauss-Newton covariance of parameters, root * root^T.
 struct Covariance {
-    Eigen::MatrixXd root;  ///< (parameters, rank); rows of held parameters are zero
-    int rank = 0;          ///< directions that the data determine
-    int free = 0;          ///< parameters that were not held
-    double variance = 1.0; ///< of a residual, which `root` holds
+    Eigen::MatrixXd root;   ///< (parameters, rank); rows of held parameters are zero
+    int rank = 0;           ///< directions that the data determine
+    int free = 0;           ///< parameters that were not held
+    double effective = 0.0; ///< numbers that the data determine rather than a prior
 
     /// Standard errors of quantities with this Jacobian (quantities, parameters).
     Eigen::VectorXd sigma(const Eigen::MatrixXd& jacobian) const;

@@ -1,5 +1,6 @@
 #include "host/fit/factor_model.h"
 
+#include "host/fit/fit.h"
 #include "host/fit/knot_choice.h"
 
 #include <ceres/cost_function.h>
@@ -36,12 +37,15 @@ Support support_at(const SmoothBasis& basis, Eigen::Index band) {
     return support;
 }
 
+/// A number a term, without memory of its own: residuals are evaluated millions of times.
+using TermVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, largest_factor_rank, 1>;
+
 /// Sum over a support of value times block, K numbers.
 template <typename Block>
-Vector curve_values(const Support& support, int rank, Block block) {
-    Vector sum = Vector::Zero(rank);
+TermVector curve_values(const Support& support, int rank, Block block) {
+    TermVector sum = TermVector::Zero(rank);
     for (std::size_t a = 0; a < support.values.size(); ++a)
-        sum += support.values[a] * Eigen::Map<const Vector>(block(a), rank);
+        sum += support.values[a] * Eigen::Map<const TermVector>(block(a), rank);
     return sum;
 }
 
@@ -60,19 +64,19 @@ public:
     bool Evaluate(double const* const* parameters, double* residual,
                   double** jacobians) const override {
         const std::size_t split = emission_.values.size();
-        const Vector e =
+        const TermVector e =
             curve_values(emission_, rank_, [&](std::size_t a) { return parameters[a]; });
-        const Vector x =
+        const TermVector x =
             curve_values(excitation_, rank_, [&](std::size_t b) { return parameters[split + b]; });
         residual[0] = weight_ * (e.dot(x) - value_);
         if (jacobians == nullptr)
             return true;
         for (std::size_t a = 0; a < split; ++a)
             if (jacobians[a] != nullptr)
-                Eigen::Map<Vector>(jacobians[a], rank_) = weight_ * emission_.values[a] * x;
+                Eigen::Map<TermVector>(jacobians[a], rank_) = weight_ * emission_.values[a] * x;
         for (std::size_t b = 0; b < excitation_.values.size(); ++b)
             if (jacobians[split + b] != nullptr)
-                Eigen::Map<Vector>(jacobians[split + b], rank_) =
+                Eigen::Map<TermVector>(jacobians[split + b], rank_) =
                     weight_ * excitation_.values[b] * e;
         return true;
     }
@@ -101,11 +105,11 @@ public:
     bool Evaluate(double const* const* parameters, double* residual,
                   double** jacobians) const override {
         const auto split = static_cast<std::size_t>(share_.size());
-        Vector e = Vector::Zero(rank_);
+        TermVector e = TermVector::Zero(rank_);
         for (std::size_t a = 0; a < split; ++a)
             e += share_(static_cast<Eigen::Index>(a)) *
                  Eigen::Map<const Vector>(parameters[a], rank_);
-        const Vector x =
+        const TermVector x =
             curve_values(excitation_, rank_, [&](std::size_t b) { return parameters[split + b]; });
         const double excess = e.dot(x) - budget_;
         residual[0] = penalty_.residual(column_, excess);
@@ -136,6 +140,8 @@ private:
 /// term emits, a prior of this width keeps it from growing without bound. In all it adds about 2
 /// to the chi squared.
 constexpr double prior_width = 10.0;
+/// Prior of the second differences of a curve that holds lines of one band, on any grid.
+constexpr double bend_of_a_line = 2.0;
 /// Of a second difference.
 constexpr std::array bend_weights = {1.0, -2.0, 1.0};
 
@@ -200,8 +206,8 @@ std::optional<double> FactorModel::bend_width(const SmoothBasis& basis,
                                               const WavelengthGrid& grid) const {
     if (!basis.knots.empty())
         return std::nullopt;
-    const double steps = basis.is_per_band() ? 1.0 : basis.spacing_nm / grid.step_nm;
-    return bend_width_ * steps * steps;
+    const double spacing_nm = basis.is_per_band() ? grid.step_nm : basis.spacing_nm;
+    return std::min(bend_of_a_line, bend_width_ * std::pow(spacing_nm / bend_step_nm, 2));
 }
 
 std::vector<int> FactorModel::block_sizes() const {

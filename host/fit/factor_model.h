@@ -7,6 +7,7 @@
 #include "host/fit/smooth_basis.h"
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -19,15 +20,17 @@ namespace reradiant {
 /// its neighbours where nothing is measured, as it is beside the diagonal.
 class FactorModel final : public TermModel {
 public:
-    /// bend_width: standard deviation of second differences one band apart, in units where a
-    /// curve's peak is about 1; see bend_of_bands and bend_of_lines.
+    /// bend_width: standard deviation of second differences of values 10 nm apart, in units where
+    /// a curve's peak is about 1; on other grids it goes with the square of the step, as those of
+    /// smooth curves do. See bend_of_bands and bend_of_lines.
     FactorModel(const FitTarget& target, int rank, const SmoothBasis& emission,
                 const SmoothBasis& excitation, const PhotonPenalty& penalty, RobustLoss loss,
                 double bend_width);
 
-    /// Widths for molecular bands, whose second differences on 10 nm reach 0.3 at a peak and are
-    /// less elsewhere, and for lines, which have 2.
-    static constexpr double bend_of_bands = 0.1, bend_of_lines = 2.0;
+    /// For molecular bands, whose second differences on 10 nm reach 0.3 at a peak and are less
+    /// elsewhere, and for lines, which have 2 on any grid.
+    static constexpr double bend_step_nm = 10.0, bend_of_bands = 0.1;
+    static constexpr double bend_of_lines = std::numeric_limits<double>::infinity();
 
     std::vector<int> block_sizes() const override;
     void add_residuals(ceres::Problem& problem, const std::vector<double*>& blocks) const override;

@@ -1,5 +1,7 @@
 #include "host/fit/factor_start.h"
 
+#include "host/fit/at_once.h"
+
 #include <Eigen/SVD>
 
 #include <algorithm>
@@ -96,16 +98,18 @@ double descend_factors(const FitTarget& target, FactorCurves& curves, int sweeps
 }
 
 std::vector<FactorCurves> factor_starts(const FitTarget& target, int rank,
-                                        const FactorCurves& smaller, int starts, unsigned seed) {
+                                        const FactorCurves& smaller, int starts, unsigned seed,
+                                        int threads) {
     std::mt19937 random(seed + static_cast<unsigned>(rank));
     std::vector<FactorCurves> list{singular_start(target.value, rank)};
     if (smaller.emission.cols() == rank - 1 && rank > 1)
         list.push_back(grown_start(target, smaller));
     for (int guess = 0; rank > 1 && guess < random_guesses; ++guess)
         list.push_back(random_start(target, rank, random));
-    std::vector<double> costs;
-    for (FactorCurves& start : list)
-        costs.push_back(descend_factors(target, start, sweeps_of_a_start));
+    std::vector<double> costs(list.size());
+    run_at_once(threads, list.size(), [&](std::size_t k) {
+        costs[k] = descend_factors(target, list[k], sweeps_of_a_start);
+    });
     std::vector<std::size_t> order(list.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(),

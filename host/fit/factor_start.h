@@ -21,7 +21,8 @@ double descend_factors(const FitTarget& target, FactorCurves& curves, int sweeps
 /// singular vectors (Boutsidis and Gallopoulos 2008), from the best of the rank below (may be of
 /// rank 0) plus one term, and random ones.
 std::vector<FactorCurves> factor_starts(const FitTarget& target, int rank,
-                                        const FactorCurves& smaller, int starts, unsigned seed);
+                                        const FactorCurves& smaller, int starts, unsigned seed,
+                                        int threads);
 
 /// Coefficients (functions, K) >= 0 whose curves come near to the given ones (bands, K).
 Eigen::MatrixXd coefficients_near(const SmoothBasis& basis, const Eigen::MatrixXd& curves);

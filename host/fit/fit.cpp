@@ -68,6 +68,8 @@ void set_error_bands(const FittedCandidate& candidate, const PreparedTarget& pre
     result.quantum_yield =
         quantum_yields(emitted_photons(model, parameters, jacobian, covariance, prepared.target),
                        prepared.diagonal, prepared.diagonal_sigma, result.warnings);
+    const double freedom = static_cast<double>(prepared.target.used_count()) - covariance.effective;
+    result.reduced_chi_squared = candidate.fit.chi_squared / std::max(1.0, freedom);
     result.parameters = covariance.free - model.terms() * model.free_units();
     result.covariance_rank = std::min(covariance.rank, result.parameters);
     if (result.covariance_rank < result.parameters)
@@ -89,9 +91,9 @@ void take_terms(const BispectralData& data, const FittedCandidate& candidate,
     result.trace = candidate.fit.trace;
     const auto used = prepared.target.used_count();
     const Eigen::Index needed = (candidate.fit.parameters.array() != 0.0).count();
-    result.reduced_chi_squared =
-        candidate.fit.chi_squared / static_cast<double>(std::max<Eigen::Index>(1, used - needed));
     if (!candidate.model) {
+        result.reduced_chi_squared =
+            candidate.fit.chi_squared / static_cast<double>(std::max<Eigen::Index>(1, used));
         result.notes.push_back("no fluorescence is seen in the data beyond their noise");
         return;
     }

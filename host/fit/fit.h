@@ -29,8 +29,7 @@ struct FitSettings {
     std::optional<int> rank;  ///< terms of `factors` (to 4) or `gaussians` (to 24); empty: evidence
     bool anti_stokes = false; ///< emission below excitation is fitted, too
     RobustLoss loss = RobustLoss::None;
-    /// Spacing of the spline functions of `factors`; 0: one number a band; empty: by evidence when
-    /// the rank is, else one number a band.
+    /// Spacing of the spline functions of `factors`; 0 or empty: one number a band.
     std::optional<double> smooth_nm;
     /// Largest compact form of `factors`: where one number a band takes more, values are kept at
     /// the bands that matter most and the curves are linear between them. Not with smooth_nm.
@@ -43,6 +42,7 @@ struct FitSettings {
     int starts = 3;                  ///< initial guesses that are tried
     SolverSettings solver;
     unsigned seed = 0; ///< of the random starts
+    int threads = 0;   ///< 0: all; the result is the same with any number
 };
 
 /// Photons emitted over photons absorbed (1 - diagonal), with its 95 % band; NaN: unknown.

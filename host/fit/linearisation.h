@@ -4,26 +4,27 @@
 #include "host/fit/non_negative_solver.h"
 
 #include <Eigen/SparseCore>
-#include <ceres/crs_matrix.h>
 #include <ceres/problem.h>
 
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 namespace reradiant {
 
 /// Cost and derivatives at a point.
+template <typename Hessian>
 struct LocalModel {
     double cost = 0.0;
     Eigen::VectorXd gradient, curvature; ///< curvature: diagonal of `normal`
-    Eigen::SparseMatrix<double> normal;  ///< J' J
+    Hessian normal;                      ///< J' J, both triangles
 
     /// The quadratic of a step from `parameters`, damped in units of the curvatures, as a function
     /// of the parameters at the step's end. One that nothing depends on stays where it is.
-    Quadratic damped(const Eigen::VectorXd& parameters, double damping) const {
-        Quadratic quadratic{normal, {}};
+    Quadratic<Hessian> damped(const Eigen::VectorXd& parameters, double damping) const {
+        Quadratic<Hessian> quadratic{normal, {}};
         for (Eigen::Index k = 0; k < parameters.size(); ++k)
             quadratic.h.coeffRef(k, k) += curvature(k) > 0.0 ? damping * curvature(k) : 1.0;
         quadratic.c = gradient - quadratic.h * parameters;
@@ -31,64 +32,51 @@ struct LocalModel {
     }
 };
 
+/// Consecutive parameters.
+struct ParameterRange {
+    Eigen::Index first = 0, count = 0;
+};
+
 /// The Ceres problem of a model with its parameters in one vector. Ceres evaluates residuals,
-/// losses and Jacobians.
+/// losses and Jacobians, one residual block at a time: Problem::Evaluate builds a new evaluator at
+/// every call, which takes five times as long as the evaluation.
 class Linearisation {
 public:
-    Linearisation(const NonNegativeModel& model, const Eigen::VectorXd& start,
-                  const SolverSettings& settings)
-        : values_(start) {
-        double* next = values_.data();
-        for (const int size : model.block_sizes()) {
-            options_.parameter_blocks.push_back(next);
-            problem_.AddParameterBlock(next, size);
-            next += size;
-        }
-        options_.num_threads = settings.threads;
-        model.add_residuals(problem_, options_.parameter_blocks);
-    }
+    Linearisation(const NonNegativeModel& model, const Eigen::VectorXd& start);
 
     /// Cost at a point, infinite where a residual cannot be evaluated.
-    double cost_at(const Eigen::VectorXd& point) {
-        values_ = point;
-        double value = 0.0;
-        const bool good = problem_.Evaluate(options_, &value, nullptr, nullptr, nullptr);
-        return good && std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
-    }
+    double cost_at(const Eigen::VectorXd& point);
 
-    /// Cost and its derivatives by some blocks, all where `blocks` is empty; nothing where they are
-    /// not defined.
-    std::optional<LocalModel> linearise(const Eigen::VectorXd& point,
-                                        const std::vector<double*>& blocks) {
-        values_ = point;
-        LocalModel local;
-        std::vector<double> slope;
-        ceres::CRSMatrix crs;
-        ceres::Problem::EvaluateOptions options = options_;
-        if (!blocks.empty())
-            options.parameter_blocks = blocks;
-        if (!problem_.Evaluate(options, &local.cost, nullptr, &slope, &crs))
-            return std::nullopt;
-        local.gradient = Eigen::Map<const Eigen::VectorXd>(slope.data(),
-                                                           static_cast<Eigen::Index>(slope.size()));
-        const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> jacobian(
-            crs.num_rows, crs.num_cols, static_cast<Eigen::Index>(crs.values.size()),
-            crs.rows.data(), crs.cols.data(), crs.values.data());
-        const Eigen::SparseMatrix<double> columns(jacobian);
-        local.normal = columns.transpose() * columns;
-        local.curvature = local.normal.diagonal();
-        if (!std::isfinite(local.cost) || !local.gradient.allFinite())
-            return std::nullopt;
-        return local;
-    }
+    /// Cost and its derivatives by some of the parameters; nothing where they are not defined.
+    template <typename Hessian>
+    std::optional<LocalModel<Hessian>> linearise(const Eigen::VectorXd& point,
+                                                 const ParameterRange& range);
 
-    const double* data() const { return values_.data(); }
-    const std::vector<double*>& blocks() const { return options_.parameter_blocks; }
+    /// Parameters of blocks that follow each other.
+    ParameterRange range_of(std::size_t first_block, std::size_t blocks) const;
 
 private:
+    struct Residuals {
+        ceres::ResidualBlockId id;
+        int count;
+        std::vector<std::pair<Eigen::Index, int>> blocks; ///< first parameter, how many
+    };
+
+    /// Rows of the Jacobian without their zeros.
+    struct Rows {
+        std::vector<int> begin{0}, column;
+        std::vector<double> value;
+    };
+
+    bool append_rows(const Residuals& residuals, const ParameterRange& range, double& cost,
+                     Eigen::VectorXd& gradient, Rows& rows);
+
     Eigen::VectorXd values_;
     ceres::Problem problem_;
-    ceres::Problem::EvaluateOptions options_;
+    std::vector<Residuals> residuals_;
+    std::vector<Eigen::Index> first_parameters_; ///< of every block, and the end
+    std::vector<double> residual_, slope_;       ///< of one residual block
+    std::vector<double*> slopes_;
 };
 
 } // namespace reradiant

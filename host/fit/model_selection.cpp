@@ -1,6 +1,7 @@
 #include "host/fit/model_selection.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@ namespace reradiant {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
+using Sparse = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 
 double misfit_of(double chi_squared, Eigen::Index data, Evidence evidence) {
@@ -42,11 +44,12 @@ double laplace_criterion(const TermModel& model, const ModelFit& fit, const FitT
                          Evidence evidence) {
     const Vector& at = fit.parameters;
     const Vector weights = target.weight.reshaped();
-    const Matrix jacobian = weights.asDiagonal() * model.entry_jacobian(at);
+    // An entry depends on few parameters, as a bend does.
+    const Sparse jacobian = weights.asDiagonal() * Sparse(model.entry_jacobian(at).sparseView());
     const Vector residual = (model.matrix(at) - target.value).reshaped().cwiseProduct(weights);
-    const Matrix prior = model.prior_jacobian();
-    const Matrix prior_normal = prior.transpose() * prior;
-    const Matrix normal = jacobian.transpose() * jacobian + prior_normal;
+    const Sparse prior = model.prior_jacobian().sparseView();
+    const Matrix prior_normal = Sparse(prior.transpose() * prior);
+    const Matrix normal = Sparse(jacobian.transpose() * jacobian) + prior_normal;
     const Vector slope = jacobian.transpose() * residual + prior_normal * at;
     std::vector<Eigen::Index> free;
     double at_zero = 0.0;

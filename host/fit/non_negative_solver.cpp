@@ -68,14 +68,15 @@ std::vector<bool> bounded_parameters(const NonNegativeModel& model, Eigen::Index
     return bounded;
 }
 
-/// One minimisation.
+/// One minimisation, with full or with sparse normal equations.
+template <typename Hessian>
 class Descent {
 public:
     Descent(const NonNegativeModel& model, Vector& parameters, const SolverSettings& settings,
             Clock::time_point start)
         : model_(model), parameters_(parameters), settings_(settings), start_(start),
           begin_(Clock::now()), bounded_(bounded_parameters(model, parameters.size())),
-          problem_(model, parameters, settings) {
+          problem_(model, parameters) {
         for (Eigen::Index k = 0; k < parameters_.size(); ++k)
             if (bounded_[static_cast<std::size_t>(k)])
                 parameters_(k) = std::max(parameters_(k), 0.0);
@@ -84,7 +85,7 @@ public:
     SolveTrace run() {
         if (settings_.journal != nullptr && goes_on())
             return trace_;
-        while (auto local = problem_.linearise(parameters_, {})) {
+        while (auto local = problem_.linearise<Hessian>(parameters_, {0, parameters_.size()})) {
             here_ = std::move(*local);
             note();
             if (must_stop()) {
@@ -152,11 +153,10 @@ private:
 
     /// Tries steps of growing damping until one does not raise the cost.
     void take_step() {
-        const bool dense = model_.linear_algebra().type != LinearAlgebra::Type::SparseNormal;
         while (!damping_.is_hopeless()) {
             std::vector<bool> free = free_at(parameters_, 0, parameters_.size());
-            const auto target = minimise_quadratic(here_.damped(parameters_, damping_.value()),
-                                                   bounded_, dense, free);
+            const auto target =
+                minimise_quadratic(here_.damped(parameters_, damping_.value()), bounded_, free);
             if (target && accepts(*target))
                 return;
             damping_.refuse();
@@ -175,20 +175,20 @@ private:
     /// Solves for the affine blocks at a point; returns the cost there.
     double settle_affine(Vector& point) {
         const double cost = problem_.cost_at(point);
-        const auto [first, count] = model_.affine_blocks();
-        if (count == 0)
+        const auto [first_block, blocks] = model_.affine_blocks();
+        if (blocks == 0)
             return cost;
-        const auto begin = problem_.blocks().begin() + static_cast<std::ptrdiff_t>(first);
-        const std::vector<double*> blocks(begin, begin + static_cast<std::ptrdiff_t>(count));
-        const auto local = problem_.linearise(point, blocks);
+        // Next to diagonal, since hardly two of them share a residual.
+        const ParameterRange range = problem_.range_of(first_block, blocks);
+        const auto local = problem_.linearise<Eigen::SparseMatrix<double>>(point, range);
         if (!local)
             return cost;
-        const Eigen::Index size = local->gradient.size(), offset = blocks.front() - problem_.data();
+        const auto [offset, size] = range;
         std::vector<bool> free = free_at(point, offset, size);
         const std::vector<bool> bounded(bounded_.begin() + offset,
                                         bounded_.begin() + offset + size);
-        const auto settled = minimise_quadratic(local->damped(point.segment(offset, size), ridge),
-                                                bounded, false, free);
+        const auto settled =
+            minimise_quadratic(local->damped(point.segment(offset, size), ridge), bounded, free);
         if (!settled)
             return cost;
         Vector moved = point;
@@ -219,7 +219,7 @@ private:
     Clock::time_point start_, begin_;
     std::vector<bool> bounded_;
     Linearisation problem_;
-    LocalModel here_;
+    LocalModel<Hessian> here_;
     Damping damping_;
     SolveTrace trace_;
     int idle_ = 0;
@@ -228,6 +228,15 @@ private:
 };
 
 } // namespace
+
+void SolveTrace::append(const SolveTrace& more) {
+    cost.insert(cost.end(), more.cost.begin(), more.cost.end());
+    seconds.insert(seconds.end(), more.seconds.begin(), more.seconds.end());
+    iterations += more.iterations;
+    kkt = more.kkt;
+    converged = more.converged;
+    stop_reason = more.stop_reason;
+}
 
 double kkt_violation(const Vector& parameters, const Vector& gradient, const Vector& curvature,
                      const NonNegativeModel& model) {
@@ -248,7 +257,9 @@ double kkt_violation(const Vector& parameters, const Vector& gradient, const Vec
 
 SolveTrace minimise_non_negative(const NonNegativeModel& model, Vector& parameters,
                                  const SolverSettings& settings, Clock::time_point start) {
-    return Descent(model, parameters, settings, start).run();
+    if (model.linear_algebra().type == LinearAlgebra::Type::SparseNormal)
+        return Descent<Eigen::SparseMatrix<double>>(model, parameters, settings, start).run();
+    return Descent<Eigen::MatrixXd>(model, parameters, settings, start).run();
 }
 
 } // namespace reradiant

@@ -41,7 +41,6 @@ struct SolverSettings {
     int most_iterations = 400;
     double kkt_tolerance = 1e-8;
     double most_seconds = 60.0;
-    int threads = 1;
     StopFlag stop = nullptr;         ///< asked before every step
     SolveJournal* journal = nullptr; ///< keeps every step, and has those of an earlier run
 };
@@ -54,6 +53,8 @@ struct SolveTrace {
     bool converged = false;
     std::string stop_reason;
 
+    /// Steps that went on from the end of these.
+    void append(const SolveTrace& more);
     double final_cost() const { return cost.empty() ? 0.0 : cost.back(); }
 };
 

@@ -58,23 +58,31 @@ SolveState state_from(const Json& json) {
 
 SolveJournal::SolveJournal(const Json& json) {
     try {
-        for (const Json& one : json) {
-            solves_.push_back(state_from(one));
-            earlier_steps_ += solves_.back().trace.iterations;
-        }
+        *this = SolveJournal(json, shared_);
     } catch (const Json::exception& error) {
         throw_runtime_error(std::string("the steps to go on from are damaged: ") + error.what());
     }
 }
 
+SolveJournal::SolveJournal(const Json& json, std::shared_ptr<Shared> shared)
+    : shared_(std::move(shared)) {
+    for (const Json& one : json.at("solves"))
+        solves_.push_back(state_from(one));
+    for (const Json& one : json.at("branches"))
+        branches_.push_back(std::unique_ptr<SolveJournal>(new SolveJournal(one, shared_)));
+}
+
 Json SolveJournal::json() const {
-    Json list = Json::array();
+    Json solves = Json::array(), branches = Json::array();
     for (const SolveState& state : solves_)
-        list.push_back(state_json(state));
-    return list;
+        solves.push_back(state_json(state));
+    for (const auto& branch : branches_)
+        branches.push_back(branch->json());
+    return {{"solves", solves}, {"branches", branches}};
 }
 
 SolveState SolveJournal::begin(const Eigen::VectorXd& start) {
+    const std::lock_guard lock(shared_->mutex);
     if (begun_ == solves_.size())
         solves_.push_back({start, start, {}, 0.0, 0.0, 0.0, 0, false});
     const SolveState& state = solves_[begun_++];
@@ -84,9 +92,24 @@ SolveState SolveJournal::begin(const Eigen::VectorXd& start) {
 }
 
 void SolveJournal::note(SolveState state) {
+    const std::lock_guard lock(shared_->mutex);
     solves_[begun_ - 1] = std::move(state);
-    if (after_step)
-        after_step();
+    if (shared_->after_step)
+        shared_->after_step();
+}
+
+SolveJournal& SolveJournal::branch() {
+    const std::lock_guard lock(shared_->mutex);
+    if (branched_ == branches_.size()) {
+        branches_.push_back(std::make_unique<SolveJournal>());
+        branches_.back()->shared_ = shared_;
+    }
+    return *branches_[branched_++];
+}
+
+void SolveJournal::set_after_step(std::function<void()> after_step) {
+    const std::lock_guard lock(shared_->mutex);
+    shared_->after_step = std::move(after_step);
 }
 
 } // namespace reradiant

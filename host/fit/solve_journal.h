@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 namespace reradiant {
@@ -18,13 +20,16 @@ struct SolveState {
     bool is_done = false;
 };
 
-/// The minimisations of one fit in their order. A fit takes the same steps whenever it is run, so
-/// that one which finds its earlier run here goes on where that stopped, bit for bit.
+/// The minimisations of one fit in their order; those that may run at the same time in branches of
+/// their own, which are in the order in which they were asked for. A fit takes the same steps
+/// whenever it is run and by however many threads, so that one which finds its earlier run here
+/// goes on where that stopped, bit for bit.
 class SolveJournal {
 public:
     SolveJournal() = default;
     /// Of an earlier run. Run-time Error for what is none.
     explicit SolveJournal(const nlohmann::json& json);
+    /// Of this and all its branches. Not while they run, but by `after_step`.
     nlohmann::json json() const;
 
     /// The next minimisation, as far as the earlier run came with it, or from its start. Run-time
@@ -33,13 +38,26 @@ public:
     /// Called after every step and at the end of the one that was begun last.
     void note(SolveState state);
 
-    std::function<void()> after_step; ///< somebody who may want to keep all this
-    int earlier_steps() const { return earlier_steps_; }
+    /// The next branch, for one thread; lives as long as the journal.
+    SolveJournal& branch();
+
+    /// Somebody who may want to keep all this: called after the steps of every branch, one call at
+    /// a time.
+    void set_after_step(std::function<void()> after_step);
 
 private:
+    /// What all branches have in common.
+    struct Shared {
+        std::mutex mutex;
+        std::function<void()> after_step;
+    };
+
+    SolveJournal(const nlohmann::json& json, std::shared_ptr<Shared> shared);
+
+    std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
     std::vector<SolveState> solves_;
-    std::size_t begun_ = 0;
-    int earlier_steps_ = 0;
+    std::vector<std::unique_ptr<SolveJournal>> branches_;
+    std::size_t begun_ = 0, branched_ = 0;
 };
 
 } // namespace reradiant

@@ -53,7 +53,7 @@ FitSettings settings_from(const py::dict& given) {
     settings.seed = given["seed"].cast<unsigned>();
     settings.solver.most_seconds = given["most_seconds"].cast<double>();
     settings.solver.most_iterations = given["most_iterations"].cast<int>();
-    settings.solver.threads = std::max(1, given["threads"].cast<int>());
+    settings.threads = given["threads"].cast<int>();
     if (!given["stack"].is_none())
         settings.stack = given["stack"].cast<LayerStack>();
     return settings;
