@@ -36,22 +36,69 @@ double mean_radiance(FilmSums film, const FilmLayout& layout, int bands) {
     return std::accumulate(parts.begin(), parts.end(), 0.0) / (static_cast<double>(pixels) * bands);
 }
 
-/// d^2 / (halves' product + floor) of one pixel, added over its bands. The product has the square
-/// of the truth as expectation. The square of the mean has more, most where one sample makes the
-/// error large: that sample would count in both, and the error of a noisy image come out too low.
-double squared_error(const PixelSums& sums, double n, const FilmLayout& layout,
-                     std::uint32_t samples, double floor) {
-    double total = 0.0;
-    for (std::size_t b = 0; b < sums.sum.size() && n > 0.0; ++b) {
-        const double value = sums.sum[b] / n;
-        const double d = half_difference(sums, layout, b, n, samples);
-        // with an odd count `d` is not bounded by the value
-        const double square = std::max(0.0, value * value - d * d) + floor;
-        if (square > 0.0)
-            total += d * d / square;
+/// Pixels side by side in memory, which help to tell each other's true values.
+class Neighbours {
+public:
+    static constexpr std::size_t most = 8;
+
+    explicit Neighbours(int bands)
+        : sums_(bands), bands_(static_cast<std::size_t>(bands)), values_(most * bands_),
+          differences_(most * bands_), totals_(bands_), squares_(bands_), noise_(bands_) {}
+
+    void read(const FilmStrip& strip, const FilmLayout& layout, std::size_t first,
+              std::size_t count) {
+        count_ = count;
+        for (std::vector<double>* sums : {&totals_, &squares_, &noise_})
+            std::fill(sums->begin(), sums->end(), 0.0);
+        for (std::size_t k = 0; k < count; ++k) {
+            sums_.read(strip, layout, first + k);
+            const double n = accepted(strip, first + k);
+            for (std::size_t b = 0; b < bands_; ++b) {
+                const double value = n > 0.0 ? sums_.sum[b] / n : 0.0;
+                values_[k * bands_ + b] = value;
+                differences_[k * bands_ + b] =
+                    n > 0.0 ? half_difference(sums_, layout, b, n, strip.samples(first + k)) : 0.0;
+                totals_[b] += value;
+                squares_[b] += value * value;
+                noise_[b] += differences_[k * bands_ + b] * differences_[k * bands_ + b];
+            }
+        }
     }
-    return total;
-}
+
+    /// d^2 / (ref^2 + floor) of one of them, mean over its bands.
+    double squared_error(std::size_t k, double floor) const {
+        double total = 0.0;
+        for (std::size_t b = 0; b < bands_; ++b) {
+            const double d = differences_[k * bands_ + b], reference = likely_value(k, b);
+            const double square = reference * reference + floor;
+            if (square > 0.0)
+                total += d * d / square;
+        }
+        return total / static_cast<double>(bands_);
+    }
+
+private:
+    /// The truth's posterior mean, for a prior with the mean of the other pixels and as variance
+    /// theirs, less what their noise explains; at least what both halves have, for a prior that
+    /// knows nothing of a highlight. The pixel's own value would not do: one bright sample makes it
+    /// as large as the error, and hides that.
+    double likely_value(std::size_t k, std::size_t b) const {
+        const double value = values_[k * bands_ + b], d = differences_[k * bands_ + b];
+        if (count_ < 2)
+            return value;
+        const double others = static_cast<double>(count_) - 1.0;
+        const double mean = (totals_[b] - value) / others;
+        const double spread = (squares_[b] - value * value) / others - mean * mean;
+        const double prior = std::max(0.0, spread - (noise_[b] - d * d) / others);
+        const double posterior = d != 0.0 ? mean + (value - mean) * prior / (prior + d * d) : value;
+        return std::clamp(posterior, value - std::abs(d), value);
+    }
+
+    PixelSums sums_;
+    std::size_t bands_, count_ = 0;
+    std::vector<double> values_, differences_;     ///< (pixel, band)
+    std::vector<double> totals_, squares_, noise_; ///< over pixels, (band)
+};
 
 /// The errors of pixels that are added in order, and how far neighbours differ.
 struct ErrorSums {
@@ -125,15 +172,19 @@ RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int ban
     if (pixel_errors)
         pixel_errors->resize(pixels_of(film));
     for (const FilmStrip& strip : film)
-        for_each_pixel(
-            strip, layout, bands, [&](std::size_t pixel, const PixelSums& sums, std::size_t chunk) {
-                const double error = squared_error(sums, accepted(strip, pixel), layout,
-                                                   strip.samples(pixel), floor) /
-                                     bands;
-                parts[chunk].add(error);
-                if (pixel_errors)
-                    (*pixel_errors)[strip.first_pixel + pixel] = static_cast<float>(error);
-            });
+        for_each_chunk(strip, [&](std::size_t first, std::size_t end, std::size_t chunk) {
+            Neighbours neighbours(bands);
+            for (std::size_t pixel = first; pixel < end; pixel += Neighbours::most) {
+                const std::size_t count = std::min(end - pixel, Neighbours::most);
+                neighbours.read(strip, layout, pixel, count);
+                for (std::size_t k = 0; k < count; ++k) {
+                    const double error = neighbours.squared_error(k, floor);
+                    parts[chunk].add(error);
+                    if (pixel_errors)
+                        (*pixel_errors)[strip.first_pixel + pixel + k] = static_cast<float>(error);
+                }
+            }
+        });
     return estimate_from(parts);
 }
 

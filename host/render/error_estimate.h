@@ -16,9 +16,9 @@ struct RelmseEstimate {
 
 /// Estimated relMSE of the mean image against the truth, as `compare` defines it: the mean of
 /// d^2 / (ref^2 + 0.01 mean(ref)^2) with d from the difference of the even and the odd samples'
-/// halves, which has the variance of the mean, and ref^2 from their product. Nothing is known where
-/// a pixel has less than two samples, and no interval below two pixels. `pixel_errors`: where each
-/// pixel's part goes.
+/// halves, which has the variance of the mean, and ref from the pixel and its neighbours. Nothing
+/// is known where a pixel has less than two samples, and no interval below two pixels.
+/// `pixel_errors`: where each pixel's part goes.
 RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int bands,
                                 std::vector<float>* pixel_errors = nullptr);
 
