@@ -56,6 +56,8 @@ private:
 constexpr double cost_rounding = 1e-14;
 /// KKT violation that still counts as convergence when rounding keeps the cost from falling.
 constexpr double kkt_of_rounding = 1e-6;
+/// Fall of the cost over a hundred steps that ends a valley at the limit of iterations.
+constexpr double hardly = 0.01;
 /// Damping of the affine blocks alone, only against singular ones.
 constexpr double ridge = 1e-12;
 /// Steps in a row that change nothing beyond rounding.
@@ -146,9 +148,22 @@ private:
         } else if (seconds() > settings_.most_seconds) {
             trace_.stop_reason = "the limit of time was reached";
         } else if (trace_.iterations >= settings_.most_iterations) {
-            trace_.stop_reason = "the limit of iterations was reached";
+            trace_.converged = trace_.kkt <= kkt_of_rounding && hardly_falls();
+            trace_.stop_reason =
+                trace_.converged
+                    ? fmt::format(
+                          "the limit of iterations was reached, where a hundred steps lower "
+                          "the cost by less than {}; the KKT conditions hold to {:.1e}",
+                          hardly, trace_.kkt)
+                    : "the limit of iterations was reached";
         }
         return !trace_.stop_reason.empty();
+    }
+
+    /// Noise moves the cost by about 1: what a valley still falls by says nothing of the data.
+    bool hardly_falls() const {
+        const auto& cost = trace_.cost;
+        return cost.size() > 100 && cost[cost.size() - 101] - cost.back() < hardly;
     }
 
     /// Tries steps of growing damping until one does not raise the cost.

@@ -71,6 +71,16 @@ TEST_P(MeasuredFit, FactorsOfRankThreeMeetTheBar) {
     }
 }
 
+/// CIBA12's photon balance binds, in a valley that falls by less than the noise for hundreds of
+/// steps.
+TEST_P(MeasuredFit, TwoTermsConverge) {
+    FitSettings settings;
+    settings.rank = 2;
+    const FitResult two = fit_reradiation(data_, settings);
+    EXPECT_EQ(two.failure, "");
+    EXPECT_LE(two.trace.kkt, 1e-6);
+}
+
 TEST_P(MeasuredFit, RankOneInTwoHundredBytesLosesLittle) {
     const FitResult one = fit(FitModel::Factors, 1), smooth = fit(FitModel::Factors, 1, 200);
     EXPECT_LE(smooth.bytes, 200u);

@@ -98,6 +98,8 @@ int run(int argc, char** argv) {
         fmt::print(stderr, "no measured data in {}\n", data.string());
         return 1;
     }
+    if (argc > 1)
+        std::filesystem::create_directories(argv[1]);
     fmt::print("| data | model | terms | bytes | relative RMSE | CPU s | steps | KKT |\n"
                "| --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (const char* name :
