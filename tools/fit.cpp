@@ -117,8 +117,7 @@ std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings set
                   options.checkpoint_seconds);
     SolveJournal journal;
     if (options.resume)
-        if (const auto state = kept.read())
-            journal = SolveJournal(*state);
+        kept.resume([&](const nlohmann::json& state) { journal = SolveJournal(state); });
     journal.set_after_step([&] { kept.keep_when_due([&] { return journal.json(); }); });
     settings.solver.journal = &journal;
     settings.solver.stop = interrupt_flag();

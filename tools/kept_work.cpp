@@ -1,8 +1,8 @@
 #include "tools/kept_work.h"
 
-#include "host/atomic_file.h"
 #include "host/error.h"
 #include "host/render/render_identity.h"
+#include "host/render/work_checkpoint.h"
 #include "host/scene/sha256.h"
 #include "tools/interrupt.h"
 
@@ -19,16 +19,6 @@ using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 namespace {
-
-constexpr const char* format_name = "reradiant work checkpoint 1\n";
-constexpr std::size_t digest_characters = 64;
-
-std::string whole_file(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-}
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -51,36 +41,16 @@ KeptWork::KeptWork(const fs::path& output, SampleIdentity identity, double secon
         file_ = output.string() + ".checkpoint";
 }
 
-std::optional<Json> KeptWork::read() const {
+void KeptWork::resume(const std::function<void(const Json&)>& take) const {
     std::error_code ignored;
     if (file_.empty() || !fs::exists(file_, ignored))
-        return std::nullopt;
-    const std::string bytes = whole_file(file_);
-    const std::string name = format_name;
-    const auto refuse = [&](const std::string& why) {
-        throw_input_error({file_.string()}, "is no whole checkpoint: " + why,
-                          "remove it and begin anew");
-    };
-    if (!bytes.starts_with(name) || bytes.size() < name.size() + digest_characters)
-        refuse("it does not begin like one of this version, or is cut off");
-    const std::string body = bytes.substr(0, bytes.size() - digest_characters);
-    if (sha256_hex(body) != bytes.substr(body.size()))
-        refuse("its checksum is wrong");
-    const Json json = Json::from_cbor(body.substr(name.size()), true, false);
-    if (!json.is_object() || !json.contains("identity") || !json.contains("state"))
-        refuse("it holds something else");
-    if (const auto difference =
-            identity_difference(identity_, json.at("identity").get<SampleIdentity>()))
-        throw_input_error({file_.string()}, "the checkpoint is of other work: " + *difference,
-                          "go on with what it was made with, or leave --resume away");
-    return json.at("state");
-}
-
-void KeptWork::write(const Json& state) const {
-    const std::vector<std::uint8_t> cbor =
-        Json::to_cbor({{"identity", identity_}, {"state", state}});
-    const std::string body = format_name + std::string(cbor.begin(), cbor.end());
-    write_text_atomically(file_, body + sha256_hex(body));
+        return;
+    const Json state = read_work_checkpoint(file_, identity_);
+    try {
+        take(state);
+    } catch (const Error& error) {
+        throw_input_error({file_.string()}, error.what());
+    }
 }
 
 void KeptWork::keep_when_due(const std::function<Json()>& state) {
@@ -88,7 +58,7 @@ void KeptWork::keep_when_due(const std::function<Json()>& state) {
                           seconds_since(written_) < std::max(seconds_, 10.0 * write_seconds_)))
         return;
     const Clock::time_point start = Clock::now();
-    write(state());
+    write_work_checkpoint(file_, identity_, state());
     written_ = Clock::now();
     write_seconds_ = seconds_since(start);
 }
@@ -114,7 +84,10 @@ std::string sha256_hex(const std::string& text) {
 }
 
 std::string file_digest(const fs::path& file) {
-    return sha256_hex(whole_file(file));
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return sha256_hex(text.str());
 }
 
 std::string stack_digest(const LayerStack& stack, const WavelengthGrid& bands) {

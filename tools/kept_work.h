@@ -9,23 +9,22 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 
 namespace reradiant {
 
-/// The checkpoint of work whose state is numbers: a file beside the output, written every so many
-/// seconds and when somebody interrupts, removed when the work is done. It says which work it is of
-/// and carries a digest.
+/// The checkpoint of work whose state is numbers (host/render/work_checkpoint.h): a file beside the
+/// output, written every so many seconds and when somebody interrupts, removed when the work is
+/// done.
 class KeptWork {
 public:
     /// None is written beside an output that is a device or a pipe. `identity` says what the work
     /// depends on; the build is added here.
     KeptWork(const std::filesystem::path& output, SampleIdentity identity, double seconds);
 
-    /// The state to go on from, where there is a checkpoint. Input Error for one that is damaged or
-    /// of other work, naming what differs.
-    std::optional<nlohmann::json> read() const;
+    /// Gives `take` the state to go on from, where there is a checkpoint. Input Error for one that
+    /// is damaged or of other work, naming what differs; those of `take` get the file's name.
+    void resume(const std::function<void(const nlohmann::json&)>& take) const;
     /// Writes when it is time. Keeps the share of time that goes into writing below a tenth.
     void keep_when_due(const std::function<nlohmann::json()>& state);
     void remove() const;
@@ -34,8 +33,6 @@ public:
     std::string interruption_text() const;
 
 private:
-    void write(const nlohmann::json& state) const;
-
     std::filesystem::path file_; ///< empty: none
     SampleIdentity identity_;
     double seconds_, write_seconds_ = 0.0;

@@ -1,5 +1,6 @@
 #include "host/measure/measure.h"
 #include "host/error.h"
+#include "host/measure/walk_states.h"
 #include "host/paths.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
@@ -64,31 +65,15 @@ SampleIdentity walk_identity(const std::filesystem::path& file, const Material& 
             {"seed", std::to_string(request.seed)}};
 }
 
-nlohmann::json states_json(const std::vector<WalkState>& states) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const WalkState& state : states)
-        list.push_back({state.blocks, state.walks, state.numbers});
-    return list;
-}
-
-std::vector<WalkState> states_from(const nlohmann::json& list) {
-    std::vector<WalkState> states;
-    for (const nlohmann::json& state : list)
-        states.push_back({state.at(0).get<std::uint64_t>(), state.at(1).get<std::uint64_t>(),
-                          state.at(2).get<std::vector<double>>()});
-    return states;
-}
-
 /// Measures with a checkpoint; nothing when it was interrupted, which it says.
 std::optional<Measurement> measure_and_keep(const MeasureOptions& options, const Material& material,
                                             MeasureRequest request) {
     KeptWork kept(options.output, walk_identity(material_file(options), material, request),
                   options.checkpoint_seconds);
     if (options.resume)
-        if (const auto state = kept.read())
-            request.walked = states_from(*state);
+        kept.resume([&](const nlohmann::json& state) { request.walked = walk_states_from(state); });
     request.pause = [&](const std::function<std::vector<WalkState>()>& states) {
-        kept.keep_when_due([&] { return states_json(states()); });
+        kept.keep_when_due([&] { return walk_states_json(states()); });
     };
     request.stop = interrupt_flag();
     catch_interrupts();

@@ -2,6 +2,8 @@
 
 #include "host/error.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace reradiant {
@@ -36,6 +38,27 @@ Json state_json(const SolveState& state) {
             {"is_done", state.is_done}};
 }
 
+[[noreturn]] void refuse(const std::string& why) {
+    throw_input_error({}, "holds no steps to go on from: " + why, "remove it and begin anew");
+}
+
+bool all_finite(const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(),
+                       [](double value) { return std::isfinite(value); });
+}
+
+void check(const SolveState& state) {
+    const SolveTrace& trace = state.trace;
+    if (state.parameters.size() != state.start.size() || trace.cost.size() != trace.seconds.size())
+        refuse("there are more numbers of one kind than of the other");
+    if (!state.start.allFinite() || !state.parameters.allFinite() || !all_finite(trace.cost) ||
+        !all_finite(trace.seconds) ||
+        !all_finite({state.damping, state.damping_growth, state.seconds}))
+        refuse("some of their numbers are not finite");
+    if (trace.iterations < 0 || trace.cost.size() != static_cast<std::size_t>(trace.iterations))
+        refuse("there are more steps than costs, or fewer");
+}
+
 SolveState state_from(const Json& json) {
     SolveState state;
     state.start = vector_from(json.at("start"));
@@ -51,6 +74,7 @@ SolveState state_from(const Json& json) {
     json.at("seconds").get_to(state.seconds);
     json.at("idle_steps").get_to(state.idle_steps);
     json.at("is_done").get_to(state.is_done);
+    check(state);
     return state;
 }
 
@@ -60,7 +84,7 @@ SolveJournal::SolveJournal(const Json& json) {
     try {
         *this = SolveJournal(json, shared_);
     } catch (const Json::exception& error) {
-        throw_runtime_error(std::string("the steps to go on from are damaged: ") + error.what());
+        refuse(error.what());
     }
 }
 

@@ -27,7 +27,7 @@ struct SolveState {
 class SolveJournal {
 public:
     SolveJournal() = default;
-    /// Of an earlier run. Run-time Error for what is none.
+    /// Of an earlier run. Input Error for what is none.
     explicit SolveJournal(const nlohmann::json& json);
     /// Of this and all its branches. Not while they run, but by `after_step`.
     nlohmann::json json() const;

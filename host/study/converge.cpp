@@ -75,11 +75,13 @@ public:
     }
 
 private:
+    WavelengthGrid bands() const { return options_.render.bands.value_or(film_bands(scene_)); }
+
     void read_reference() {
         Reference& reference = result_.reference;
         reference.file = options_.reference;
         reference.image = read_spectral_exr(options_.reference);
-        check_reference(reference, scene_, options_.render.bands.value_or(film_bands(scene_)));
+        check_reference(reference, scene_, bands());
         Sha256 digest;
         digest.update({reinterpret_cast<const char*>(reference.image.values.data()),
                        reference.image.values.size() * sizeof(float)});
@@ -106,7 +108,8 @@ private:
         const std::string identity =
             sha256_of(fmt::format("{} {} {} {}", common_identity(scene_, device_, options_),
                                   render.seed, render.samples, render.time_seconds));
-        if (auto kept = kept_reference(options_.folder, identity)) {
+        if (auto kept = kept_reference(options_.folder, identity);
+            kept && is_of_film(kept->image, scene_, bands())) {
             result_.reference = std::move(*kept);
             return;
         }
@@ -229,9 +232,10 @@ private:
 
     bool take_kept(std::size_t index) {
         auto kept = kept_method(options_.folder, method_identity(index), options_.methods[index]);
-        if (kept)
-            result_.methods.push_back(std::move(*kept));
-        return kept.has_value();
+        if (!kept || !is_of_film(kept->image, scene_, bands()))
+            return false;
+        result_.methods.push_back(std::move(*kept));
+        return true;
     }
 
     void add_method(std::size_t index) {

@@ -10,6 +10,20 @@
 
 namespace reradiant {
 
+namespace {
+
+bool has_size_of(const SpectralImage& image, const Scene& scene) {
+    return image.width == scene.film.width && image.height == scene.film.height;
+}
+
+bool has_bands(const SpectralImage& image, const WavelengthGrid& bands) {
+    return image.bands.count == bands.count &&
+           std::abs(image.bands.from_nm - bands.from_nm) <= 1e-5 &&
+           std::abs(image.bands.step_nm - bands.step_nm) <= 1e-5;
+}
+
+} // namespace
+
 void check_methods(const Scene& scene, const ConvergeOptions& options) {
     WavelengthPlan plan =
         plan_wavelengths(scene, options.render.bands.value_or(film_bands(scene)), {1});
@@ -25,19 +39,20 @@ void check_methods(const Scene& scene, const ConvergeOptions& options) {
     }
 }
 
+bool is_of_film(const SpectralImage& image, const Scene& scene, const WavelengthGrid& bands) {
+    return has_size_of(image, scene) && has_bands(image, bands);
+}
+
 void check_reference(const Reference& reference, const Scene& scene, const WavelengthGrid& bands) {
     const SpectralImage& image = reference.image;
     const SourcePosition at{reference.file.string()};
-    if (image.width != scene.film.width || image.height != scene.film.height)
+    if (!has_size_of(image, scene))
         throw_input_error(at,
                           fmt::format("the reference has {} x {} pixels, the scene's film {} x {}",
                                       image.width, image.height, scene.film.width,
                                       scene.film.height),
                           "render the reference from the same scene");
-    const bool alike = image.bands.count == bands.count &&
-                       std::abs(image.bands.from_nm - bands.from_nm) <= 1e-5 &&
-                       std::abs(image.bands.step_nm - bands.step_nm) <= 1e-5;
-    if (!alike)
+    if (!has_bands(image, bands))
         throw_input_error(
             at,
             fmt::format("the reference has the bands {}:{}:{} nm, the scene {}:{}:{} nm",

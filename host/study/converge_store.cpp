@@ -56,6 +56,19 @@ CurveRow row_from_json(const Json& json) {
     return row;
 }
 
+/// Of seconds and samples that grow: what a file that somebody else wrote may not keep to.
+std::vector<CurveRow> rows_from_json(const Json& json) {
+    std::vector<CurveRow> rows;
+    CurveRow last;
+    for (const Json& one : json) {
+        const CurveRow row = row_from_json(one);
+        if (row.seconds <= last.seconds || row.samples <= last.samples)
+            return {};
+        last = rows.emplace_back(row);
+    }
+    return rows;
+}
+
 fs::path method_file(const fs::path& folder, const RenderMethod& method, const char* ending) {
     return folder / "methods" / (method.file_stem() + ending);
 }
@@ -124,17 +137,14 @@ void keep_rows(const fs::path& folder, const std::string& identity, const ErrorC
 
 std::vector<CurveRow> kept_rows(const fs::path& folder, const std::string& identity,
                                 const RenderMethod& method) {
-    std::ifstream stream(method_file(folder, method, ".rows.json"));
+    std::ifstream stream = open_regular_file(method_file(folder, method, ".rows.json"));
     const Json json = Json::parse(stream, nullptr, false);
-    std::vector<CurveRow> rows;
     try {
         if (json.is_object() && json.at("identity") == identity)
-            for (const Json& row : json.at("rows"))
-                rows.push_back(row_from_json(row));
-    } catch (const Json::exception&) {
-        return {};
+            return rows_from_json(json.at("rows"));
+    } catch (const Json::exception&) { // none, as below
     }
-    return rows;
+    return {};
 }
 
 std::optional<MethodResult> kept_method(const fs::path& folder, const std::string& identity,
@@ -149,8 +159,9 @@ std::optional<MethodResult> kept_method(const fs::path& folder, const std::strin
         result.curve.method = method;
         result.curve.setup_seconds = json.at("setup_seconds").get<double>();
         result.curve.build_seconds = json.at("build_seconds").get<double>();
-        for (const Json& row : json.at("rows"))
-            result.curve.rows.push_back(row_from_json(row));
+        result.curve.rows = rows_from_json(json.at("rows"));
+        if (result.curve.rows.empty())
+            return std::nullopt;
         result.image = read_spectral_exr(method_image(folder, method));
         return result;
     } catch (const Json::exception&) {
