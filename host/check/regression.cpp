@@ -37,8 +37,9 @@ nlohmann::json read_saved(const std::filesystem::path& file) {
         throw_input_error({file.string()}, "cannot be opened",
                           "name a file that `reradiant check --save` wrote");
     const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
-    if (!json.is_object() || json.value("format", "") != format_name ||
-        !json["functions"].is_object())
+    const auto holds = [&](const char* key) { return json.is_object() && json.contains(key); };
+    if (!holds("format") || json.at("format") != format_name || !holds("functions") ||
+        !json.at("functions").is_object())
         throw_input_error({file.string()}, "holds no results of `reradiant check`",
                           "name a file that `reradiant check --save` wrote");
     return json;
@@ -64,8 +65,8 @@ void compare_function(FunctionReport& function, const nlohmann::json& saved,
         function.failures.push_back(fmt::format("{} does not hold it", file.string()));
         return;
     }
-    const nlohmann::json& entry = saved[function.name];
-    const CheckSample then{numbers_of(entry["results"]), numbers_of(entry["budgets"])};
+    const nlohmann::json& entry = saved.at(function.name);
+    const CheckSample then{numbers_of(entry.at("results")), numbers_of(entry.at("budgets"))};
     if (then.results.size() != function.sample.results.size() ||
         then.budgets.size() != function.sample.budgets.size()) {
         function.failures.push_back(fmt::format(
@@ -96,7 +97,7 @@ void compare_results(const std::filesystem::path& file, CheckReport& report) {
     const nlohmann::json saved = read_saved(file);
     try {
         for (FunctionReport& function : report.functions)
-            compare_function(function, saved["functions"], file);
+            compare_function(function, saved.at("functions"), file);
     } catch (const nlohmann::json::exception& error) {
         throw_input_error({file.string()}, fmt::format("is damaged: {}", error.what()),
                           "save it anew with `reradiant check --save`");

@@ -1,6 +1,7 @@
 #include "host/fit/solve_journal.h"
 
 #include "host/error.h"
+#include "host/json_numbers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,14 +66,14 @@ SolveState state_from(const Json& json) {
     state.parameters = vector_from(json.at("parameters"));
     json.at("cost").get_to(state.trace.cost);
     json.at("seconds_at").get_to(state.trace.seconds);
-    json.at("iterations").get_to(state.trace.iterations);
+    state.trace.iterations = whole_number<int>(json.at("iterations"));
     json.at("kkt").get_to(state.trace.kkt);
     json.at("converged").get_to(state.trace.converged);
     json.at("stop_reason").get_to(state.trace.stop_reason);
     json.at("damping").get_to(state.damping);
     json.at("damping_growth").get_to(state.damping_growth);
     json.at("seconds").get_to(state.seconds);
-    json.at("idle_steps").get_to(state.idle_steps);
+    state.idle_steps = whole_number<int>(json.at("idle_steps"));
     json.at("is_done").get_to(state.is_done);
     check(state);
     return state;

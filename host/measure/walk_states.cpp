@@ -1,6 +1,7 @@
 #include "host/measure/walk_states.h"
 
 #include "host/error.h"
+#include "host/json_numbers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,8 @@ std::vector<WalkState> walk_states_from(const Json& list) {
     std::vector<WalkState> states;
     try {
         for (const Json& state : list)
-            states.push_back({state.at(0).get<std::uint64_t>(), state.at(1).get<std::uint64_t>(),
+            states.push_back({whole_number<std::uint64_t>(state.at(0)),
+                              whole_number<std::uint64_t>(state.at(1)),
                               state.at(2).get<std::vector<double>>()});
     } catch (const Json::exception& error) {
         throw_input_error({}, std::string("holds no walks to go on from: ") + error.what(),

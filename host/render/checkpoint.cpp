@@ -2,6 +2,7 @@
 
 #include "host/atomic_file.h"
 #include "host/error.h"
+#include "host/json_numbers.h"
 #include "host/regular_file.h"
 #include "host/scene/sha256.h"
 
@@ -41,7 +42,7 @@ nlohmann::json pass_json(const RenderProgress& pass) {
 
 RenderProgress pass_from(const nlohmann::json& json) {
     RenderProgress pass;
-    pass.samples = json.at(0).get<std::uint32_t>();
+    pass.samples = whole_number<std::uint32_t>(json.at(0));
     pass.seconds = json.at(1).get<double>();
     if (!json.at(2).is_null())
         pass.relmse = json.at(2).get<double>();
@@ -132,9 +133,10 @@ CheckpointSizes parse_header(const fs::path& file, const std::string& text,
         checkpoint.identity = json.at("identity").get<SampleIdentity>();
         for (const nlohmann::json& pass : json.at("passes"))
             checkpoint.passes.push_back(pass_from(pass));
-        checkpoint.paths = json.at("paths").get<std::uint64_t>();
-        checkpoint.rays = json.at("rays").get<std::uint64_t>();
-        return {json.at("sums").get<std::uint64_t>(), json.at("statistics").get<std::uint64_t>()};
+        checkpoint.paths = whole_number<std::uint64_t>(json.at("paths"));
+        checkpoint.rays = whole_number<std::uint64_t>(json.at("rays"));
+        return {whole_number<std::uint64_t>(json.at("sums")),
+                whole_number<std::uint64_t>(json.at("statistics"))};
     } catch (const nlohmann::json::exception& error) {
         refuse(file, error.what());
     }

@@ -2,6 +2,7 @@
 
 #include "host/atomic_file.h"
 #include "host/error.h"
+#include "host/json_numbers.h"
 #include "host/regular_file.h"
 #include "host/report/json_file.h"
 
@@ -44,7 +45,7 @@ CurveRow row_from_json(const Json& json) {
     CurveRow row;
     row.seconds = json.at("seconds").get<double>();
     row.seconds_with_setup = json.at("seconds_with_setup").get<double>();
-    row.samples = json.at("spp").get<std::uint32_t>();
+    row.samples = whole_number<std::uint32_t>(json.at("spp"));
     row.error.relmse = json.at("relmse").get<double>();
     row.error.relmse_srgb = json.at("relmse_srgb").get<double>();
     row.error.rmse = json.at("rmse").get<double>();

@@ -3,6 +3,7 @@
 #include "host/atomic_file.h"
 #include "host/error.h"
 #include "host/film/colour_image.h"
+#include "host/json_numbers.h"
 #include "host/regular_file.h"
 #include "host/report/json_file.h"
 #include "host/report/polar_plot.h"
@@ -73,7 +74,7 @@ CellMeasurement measurement_from(const Json& json) {
     CellMeasurement measurement;
     const Json& bands = json.at("bands");
     measurement.bands = {bands.at("from_nm").get<double>(), bands.at("step_nm").get<double>(),
-                         bands.at("count").get<int>()};
+                         whole_number<int>(bands.at("count"))};
     const int n = measurement.bands.count;
     const std::vector<double> entries = list_from(json.at("matrix"));
     if (n < 1 || entries.size() != static_cast<std::size_t>(n) * static_cast<std::size_t>(n))
