@@ -1,15 +1,12 @@
 #include "host/render/checkpoint.h"
-#include "host/scene/sha256.h"
-#include "tests/fuzz/fuzz_input.h"
+#include "tests/fuzz/digested_input.h"
 
-// Checkpoints of a render. The digest at the end keeps a fuzzer out of all that comes after it, so
-// every input is read as it is and again with its digest made right.
+// Checkpoints of a render.
 
 using namespace reradiant;
 
 namespace {
 
-constexpr std::size_t digest_letters = 64;
 /// As in the corpus.
 constexpr std::uint64_t floats = 12;
 const SampleIdentity identity = {{"scene", "abc"}, {"seed", "7"}};
@@ -30,13 +27,6 @@ void read_as_checkpoint(std::string_view text) {
 } // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-    const std::string_view text = fuzz::text_of(bytes, size);
-    read_as_checkpoint(text);
-    if (size <= digest_letters)
-        return 0;
-    const std::string body(text.substr(0, size - digest_letters));
-    Sha256 digest;
-    digest.update(body);
-    read_as_checkpoint(body + digest.hex());
+    fuzz::read_digested(bytes, size, read_as_checkpoint);
     return 0;
 }

@@ -1,17 +1,14 @@
 #include "host/fit/solve_journal.h"
 #include "host/measure/walk_states.h"
 #include "host/render/work_checkpoint.h"
-#include "host/scene/sha256.h"
-#include "tests/fuzz/fuzz_input.h"
+#include "tests/fuzz/digested_input.h"
 
-// Checkpoints of fits and of measurements by the walk. The digest at the end keeps a fuzzer out of
-// all that comes before it, so every input is read as it is and again with its digest made right.
+// Checkpoints of fits and of measurements by the walk.
 
 using namespace reradiant;
 
 namespace {
 
-constexpr std::size_t digest_letters = 64;
 /// As in the corpus.
 const SampleIdentity identity = {{"data", "abc"}, {"seed", "7"}};
 
@@ -39,13 +36,6 @@ void read_as_checkpoint(std::string_view text) {
 } // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-    const std::string_view text = fuzz::text_of(bytes, size);
-    read_as_checkpoint(text);
-    if (size <= digest_letters)
-        return 0;
-    const std::string body(text.substr(0, size - digest_letters));
-    Sha256 digest;
-    digest.update(body);
-    read_as_checkpoint(body + digest.hex());
+    fuzz::read_digested(bytes, size, read_as_checkpoint);
     return 0;
 }
