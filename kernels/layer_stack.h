@@ -22,11 +22,11 @@ KERNELS_BEGIN
 #define CHOICE_LOBE 2
 #define CHOICE_DIFFUSE (2 + LOBES)
 
-/// Cumulative probabilities of the components at one angle, and the albedo there (mean over
-/// lanes), which Russian roulette uses.
+/// Cumulative probabilities of the components at one angle, and the albedo there of the lane that
+/// reflects most, which Russian roulette uses.
 typedef struct {
     real cumulative[CHOICES];
-    real albedo;
+    real largest_albedo;
 } LayerChoice;
 
 /// What shading needs of a material.
@@ -46,7 +46,7 @@ DEVICE_FUNCTION LayerChoice layer_stack_choice(LayerStackView stack, real cos_o)
     LayerChoice choice;
     for (uint i = 0u; i < CHOICES; ++i)
         choice.cumulative[i] = row[i] + t * (row[i + CHOICES + 1u] - row[i]);
-    choice.albedo = row[CHOICES] + t * (row[2u * CHOICES + 1u] - row[CHOICES]);
+    choice.largest_albedo = row[CHOICES] + t * (row[2u * CHOICES + 1u] - row[CHOICES]);
     return choice;
 }
 

@@ -19,6 +19,19 @@
 #define WALK_DIMENSION 0x80000000u
 #define WALK_DIMENSIONS_PER_VERTEX 0x100000u
 
+/// Below this throughput a path is put under Russian roulette, and survives at least at the second.
+#define ROULETTE_THROUGHPUT 0.1f
+#define ROULETTE_LEAST_SURVIVAL 0.05f
+
+/// Probability with which a path goes on from its vertex `depth` (0 is the first). `throughput`
+/// bounds what the lane that carries most still brings: with the mean of the lanes in its place a
+/// saturated colour's bright lanes would hang on few paths of large weight.
+real path_survival(real throughput, uint depth, uint min_depth) {
+    if (depth + 1u < min_depth)
+        return 1.0f;
+    return fmin(1.0f, fmax(throughput * (1.0f / ROULETTE_THROUGHPUT), ROULETTE_LEAST_SURVIVAL));
+}
+
 /// The scalar weights of all components in one direction; `scale` holds cos / pdf.
 DirectionRecord direction_weights(LayerStackView stack, Vec3 wi, Vec3 wo, real scale,
                                   __global float* lobe_weights) {
@@ -117,8 +130,7 @@ RayRecord walk_from_here(const ShadeScene* scene, SurfacePoint point, Walk* walk
     const WalkEnd end = walk_stack(walk, point.wo);
     const Vec3 direction = sampling_to_world(point.frame, end.direction);
     state->throughput *= end.expected;
-    const real survival =
-        depth + 1u < min_depth ? 1.0f : fmin(1.0f, fmax(state->throughput, 0.05f));
+    const real survival = path_survival(state->throughput, depth, min_depth);
     if (end.weight > 0.0f && u < survival && vec3_dot(point.geometric, direction) > 0.0f) {
         vertex->has_next = 1u;
         state->throughput /= survival;
@@ -222,8 +234,8 @@ __kernel void shade(__global RayRecord* rays, __global const HitRecord* hits,
                                          next_lobes + LOBES, colour);
 #endif
 
-    state.throughput *= choice.albedo;
-    const real survival = depth + 1u < min_depth ? 1.0f : fmin(1.0f, fmax(state.throughput, 0.05f));
+    state.throughput *= choice.largest_albedo;
+    const real survival = path_survival(state.throughput, depth, min_depth);
     if (u.d < survival) {
         real density = state.bsdf_pdf; // as it was where no direction is found
         const RayRecord next =

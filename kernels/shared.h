@@ -200,7 +200,7 @@ typedef struct {
     shared_float alpha;    ///< 0: smooth
     shared_uint distribution;
     shared_uint multiple;     ///< 1: light between facets is followed
-    shared_float albedo;      ///< substrate, or of scattering: guess for roulette, mean over lanes
+    shared_float albedo;      ///< substrate, or of scattering: for roulette, the largest lane's
     shared_uint cavities;     ///< blinn, multiple: the table of walk_cavities.h
     shared_uint reflectance;  ///< conductor: [phase][node][lane] over the cosine at the facet
     shared_uint bounced;      ///< with cavities: [phase][lane], kept of what is given back
@@ -256,7 +256,7 @@ typedef struct {
     shared_uint phase;
     shared_uint vertex_count; ///< records written for this path
     shared_float bsdf_pdf;    ///< of the last direction; < 0: delta or camera
-    shared_float throughput;  ///< running estimate for Russian roulette
+    shared_float throughput;  ///< bound over the lanes, for Russian roulette
 } PathState;
 ASSERT_SIZE(PathState, 24);
 

@@ -25,7 +25,7 @@ typedef struct {
     WalkWriter writer;
     WalkRandom random;
     real weight;
-    float expected; ///< weight times the mean of what events take from the lanes
+    float expected; ///< weight times what events leave of the lane that keeps most
     int is_delta;   ///< smooth surfaces alone so far
     uint steps;
     uint reference; ///< which extinction scattering distances are sampled with

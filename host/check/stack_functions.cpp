@@ -48,7 +48,7 @@ std::vector<CheckedFunction> component_functions() {
                          share, const LayerStackView stack = CHECK_STACK;
                          const LayerChoice choice = layer_stack_choice(stack, in[0]);
                          for (uint i = 0u; i < CHOICES; ++i) out[i] = choice.cumulative[i];
-                         out[CHOICES] = choice.albedo),
+                         out[CHOICES] = choice.largest_albedo),
             CHECKED_FUNCTION("layer_stack_pdf", "kernels/layer_stack.h",
                              (Arguments{direction(), direction()}), 1, lobe,
                              const LayerStackView stack = CHECK_STACK;

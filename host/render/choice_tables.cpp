@@ -39,11 +39,11 @@ CosineLobe cosine_lobe(const MaterialOptics& optics, const LaneOperator& substra
 }
 
 struct ComponentShares {
-    std::vector<double> shares; ///< delta, top, deeper lobes, diffuse
-    double albedo = 0.0;
+    std::vector<double> shares;  ///< delta, top, deeper lobes, diffuse
+    double largest_albedo = 0.0; ///< over the lanes
 };
 
-/// Reflectance of each component at one angle, mean over lanes of its share.
+/// Each component's share of what is reflected at one angle, mean over lanes.
 ComponentShares component_shares(const MaterialOptics& optics, const CosineLobe& lobe, int phase,
                                  int lobes, double cosine) {
     ComponentShares result{std::vector<double>(static_cast<std::size_t>(3 + lobes), 0.0)};
@@ -59,7 +59,7 @@ ComponentShares component_shares(const MaterialOptics& optics, const CosineLobe&
         double sum = 0.0;
         for (const double share : here)
             sum += share;
-        result.albedo += sum / lanes;
+        result.largest_albedo = std::max(result.largest_albedo, sum);
         for (std::size_t i = 0; i < here.size() && sum > 0.0; ++i)
             result.shares[i] += here[i] / (sum * lanes);
     }
@@ -92,7 +92,7 @@ std::uint32_t append_choice(const MaterialOptics& optics, const LaneOperator& su
             cumulative += row.shares[i] / sum;
             lanes.append(i + 1 < largest.size() ? cumulative : 1.0);
         }
-        lanes.append(std::min(1.0, row.albedo));
+        lanes.append(std::min(1.0, row.largest_albedo));
     }
     return offset;
 }

@@ -48,7 +48,7 @@ struct SlabDepths {
     double extinction(std::size_t i) const { return absorption[i] + scattering[i]; }
 };
 
-/// Extinctions in equal ratios from the smallest lane's to the largest's, and the mean albedo.
+/// Extinctions in equal ratios from the smallest lane's to the largest's, and the largest albedo.
 void set_references(const SlabDepths& depths, WalkPartRecord& part) {
     double least = std::numeric_limits<double>::infinity(), most = 0.0, albedo = 0.0;
     const std::size_t count = depths.absorption.size();
@@ -56,13 +56,14 @@ void set_references(const SlabDepths& depths, WalkPartRecord& part) {
         const double extinction = depths.extinction(i);
         least = std::min(least, extinction);
         most = std::max(most, extinction);
-        albedo += extinction > 0.0 ? depths.scattering[i] / extinction : 0.0;
+        if (extinction > 0.0)
+            albedo = std::max(albedo, depths.scattering[i] / extinction);
     }
     least = std::max(least, least_reference * most);
     for (int r = 0; r < WALK_REFERENCES; ++r)
         part.references[r] =
             static_cast<float>(least * std::pow(most / least, r / (WALK_REFERENCES - 1.0)));
-    part.albedo = static_cast<float>(albedo / static_cast<double>(count));
+    part.albedo = static_cast<float>(albedo);
 }
 
 class WalkTables {
@@ -166,8 +167,8 @@ private:
             return;
         }
         WalkPartRecord part = surface_part(0.0, Distribution::Ggx, Scattering::Single);
-        part.albedo =
-            static_cast<float>(std::clamp(std::numbers::pi * middle.row_sums().mean(), 0.0, 1.0));
+        part.albedo = static_cast<float>(
+            std::clamp(std::numbers::pi * middle.row_sums().maxCoeff(), 0.0, 1.0));
         out_.walk_parts.push_back(part);
     }
 
@@ -180,10 +181,10 @@ private:
         WalkPartRecord part =
             surface_part(conductor.alpha, conductor.distribution, conductor.scattering);
         part.reflectance = lanes_.append_nodes_of_lanes(reflectance);
-        double sum = 0.0;
+        double largest = 0.0;
         for (int lane = 0; lane < lanes_.lanes(); ++lane)
-            sum += reflectance(1.0, lanes_.phases() / 2, lane);
-        part.albedo = static_cast<float>(sum / lanes_.lanes());
+            largest = std::max(largest, reflectance(1.0, lanes_.phases() / 2, lane));
+        part.albedo = static_cast<float>(largest);
         const auto surface = [&](double nm) {
             return conductor_surface(conductor_at(conductor, nm), ior_above, nm);
         };
