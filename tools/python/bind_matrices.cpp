@@ -10,6 +10,7 @@
 
 #include <memory>
 
+#include <optional>
 namespace py = pybind11;
 
 namespace reradiant::python {
@@ -71,8 +72,10 @@ std::string plot(const ReradiationMatrix& matrix, const std::string& title) {
 }
 
 py::object colour(const ReradiationMatrix& matrix, const std::string& name, const Spectrum& light,
-                  bool e308, const ReradiationMatrix* against) {
-    const ColourSum sum = e308 ? ColourSum::E308 : ColourSum::Bands;
+                  std::optional<bool> e308, const ReradiationMatrix* against) {
+    ColourSum sum = ColourSum::Automatic;
+    if (e308)
+        sum = *e308 ? ColourSum::E308 : ColourSum::Bands;
     ColourReport report = colour_report(matrix, name, light, sum);
     if (against != nullptr)
         report.ciede2000 = ciede2000(report.colour.lab, colour_of_matrix(*against, light, sum).lab);
