@@ -1,9 +1,11 @@
 #include "host/device/device.h"
+#include "host/device/driver_list.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
 
 #include <fmt/format.h>
 
+#include <spdlog/spdlog.h>
 namespace reradiant {
 
 namespace {
@@ -37,7 +39,13 @@ int run_devices(const CommonOptions& common) {
     }
     if (devices.empty())
         Device("0"); // throws the error that says what to install
-    write_json(common.json, {{"devices", list}});
+    nlohmann::ordered_json absent = nlohmann::ordered_json::array();
+    for (const AbsentDriver& driver : absent_drivers()) {
+        spdlog::warn("{}", absent_driver_text(driver));
+        absent.push_back(
+            {{"file", driver.file}, {"library", driver.library}, {"reason", driver.reason}});
+    }
+    write_json(common.json, {{"devices", list}, {"not_loaded", absent}});
     return 0;
 }
 
