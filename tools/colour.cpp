@@ -5,7 +5,7 @@
 #include "host/spectral/colour_report.h"
 #include "host/spectral/matrix_io.h"
 #include "tools/command.h"
-#include "tools/parse_options.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -149,9 +149,8 @@ bool some_polygon_passes(const std::vector<ColourReport>& reports) {
 }
 
 int run_colour(const ColourOptions& options, const CommonOptions& common) {
-    for (const fs::path& output : {options.plot, common.json})
-        if (!output.empty())
-            check_output_folder(output);
+    check_outputs(common, {{"--plot", options.plot, {".svg"}}},
+                  {options.matrix, options.against, options.polygons});
     const ReradiationMatrix matrix = read_reradiation(options.matrix);
     const std::vector<ColourReport> reports = report_colours(options, matrix);
     Json json = Json::object();

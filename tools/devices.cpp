@@ -2,10 +2,11 @@
 #include "host/device/driver_list.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
-
 #include <spdlog/spdlog.h>
+
 namespace reradiant {
 
 namespace {
@@ -26,6 +27,7 @@ nlohmann::ordered_json to_json(const DeviceInfo& device) {
 }
 
 int run_devices(const CommonOptions& common) {
+    check_outputs(common, {});
     prepare_opencl(common.threads);
     const std::vector<DeviceInfo> devices = list_devices();
     nlohmann::ordered_json list = nlohmann::ordered_json::array();

@@ -1,3 +1,4 @@
+#include "host/output_file.h"
 #include "host/report/svg.h"
 #include "host/spectral/colour_report.h"
 #include "host/spectral/matrix_io.h"
@@ -9,8 +10,8 @@
 #include <pybind11/stl.h>
 
 #include <memory>
-
 #include <optional>
+
 namespace py = pybind11;
 
 namespace reradiant::python {
@@ -92,8 +93,11 @@ void bind_matrices(py::module_& module) {
                     [](const std::string& file) {
                         return std::make_shared<ReradiationMatrix>(read_reradiation(file));
                     })
-        .def("write", [](const ReradiationMatrix& matrix,
-                         const std::string& file) { write_reradiation(file, matrix); })
+        .def("write",
+             [](const ReradiationMatrix& matrix, const std::string& file) {
+                 check_output_file(file);
+                 write_reradiation(file, matrix);
+             })
         .def_property_readonly(
             "values", [](ReradiationMatrix& matrix) -> Eigen::MatrixXd& { return matrix.values; },
             py::return_value_policy::reference_internal)
