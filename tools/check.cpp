@@ -1,10 +1,12 @@
 #include "host/check/check.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 namespace reradiant {
 
@@ -70,6 +72,10 @@ void print_row(const FunctionReport& function, bool in_double) {
 }
 
 int run_check(const CheckCommandOptions& options, const CommonOptions& common) {
+    check_outputs(common, {{"--save", options.save, {".json"}}});
+    std::optional<SavedResults> saved;
+    if (!options.against.empty())
+        saved = read_saved_results(options.against);
     prepare_opencl(common.threads);
     const Device device(common.device);
     const bool in_double = options.check.in_double;
@@ -79,8 +85,8 @@ int run_check(const CheckCommandOptions& options, const CommonOptions& common) {
         if (!common.quiet)
             print_row(function, in_double);
     });
-    if (!options.against.empty())
-        compare_results(options.against, report);
+    if (saved)
+        compare_results(*saved, report);
     if (!options.save.empty())
         save_results(options.save, device, report);
     write_json(common.json, to_json(report, device.info(), in_double));

@@ -5,7 +5,7 @@
 #include "host/scene/load_state.h"
 #include "tools/command.h"
 #include "tools/material_tree.h"
-#include "tools/parse_options.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -131,7 +131,7 @@ void print(const Classification& result, const std::string& preset) {
 
 int run_classify(const ClassifyOptions& options, const CommonOptions& common) {
     check_answers(options);
-    check_output_folder(options.output);
+    check_outputs(common, {{"--output", options.output, {".toml"}}});
     const Classification result = classify(options);
     const std::string preset = material_class(result.letters.front()).presets.front();
     const fs::path file = spectra_directory() / "materials" / (preset + ".toml");

@@ -5,7 +5,7 @@
 #include "host/spectral/colour_report.h"
 #include "host/spectral/matrix_io.h"
 #include "tools/command.h"
-#include "tools/parse_options.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -28,7 +28,13 @@ constexpr int exit_no_polygon_passes = 3;
 struct ColourOptions {
     fs::path matrix, against, polygons, plot;
     std::vector<std::string> illuminants{"D65"};
-    bool e308 = false;
+    bool e308 = false, plain = false;
+
+    ColourSum sum() const {
+        if (e308)
+            return ColourSum::E308;
+        return plain ? ColourSum::Bands : ColourSum::Automatic;
+    }
 };
 
 ColourReport report_of_file(const fs::path& file, const ReradiationMatrix& matrix,
@@ -64,7 +70,7 @@ std::vector<ColourPolygon> read_polygons(const ColourOptions& options) {
 
 std::vector<ColourReport> report_colours(const ColourOptions& options,
                                          const ReradiationMatrix& matrix) {
-    const ColourSum sum = options.e308 ? ColourSum::E308 : ColourSum::Bands;
+    const ColourSum sum = options.sum();
     const std::vector<ColourPolygon> polygons = read_polygons(options);
     std::optional<ReradiationMatrix> other;
     if (!options.against.empty())
@@ -96,6 +102,8 @@ void print(const ColourReport& report, const ColourOptions& options) {
     const MatrixColour& colour = report.colour;
     const std::size_t brightest = report.brightest_band();
     fmt::print("{}\n", report.illuminant);
+    if (!colour.reason.empty())
+        fmt::print("  {}\n", colour.reason);
     fmt::print("  XYZ  {:.4f} {:.4f} {:.4f}\n", colour.xyz[0], colour.xyz[1], colour.xyz[2]);
     fmt::print("  xy   {:.5f} {:.5f}\n", colour.xy[0], colour.xy[1]);
     fmt::print("  Lab  {:.4f} {:.4f} {:.4f}\n", colour.lab[0], colour.lab[1], colour.lab[2]);
@@ -141,9 +149,8 @@ bool some_polygon_passes(const std::vector<ColourReport>& reports) {
 }
 
 int run_colour(const ColourOptions& options, const CommonOptions& common) {
-    for (const fs::path& output : {options.plot, common.json})
-        if (!output.empty())
-            check_output_folder(output);
+    check_outputs(common, {{"--plot", options.plot, {".svg"}}},
+                  {options.matrix, options.against, options.polygons});
     const ReradiationMatrix matrix = read_reradiation(options.matrix);
     const std::vector<ColourReport> reports = report_colours(options, matrix);
     Json json = Json::object();
@@ -176,9 +183,12 @@ void add_colour_command(CLI::App& program, CommandContext& context) {
                      "CIE illuminants: D65,A,FL2,LED-B3; an unknown name lists them all")
         ->delimiter(',')
         ->capture_default_str();
-    command->add_flag("--e308", options->e308,
-                      "sums over 1 nm between the bands (ASTM E308, E2022) instead of plain sums "
-                      "at the bands");
+    CLI::Option* const e308 = command->add_flag(
+        "--e308", options->e308,
+        "sums over 1 nm between the bands (ASTM E308, E2022), for every lamp; by default they are "
+        "plain sums at the bands (ASTM E2152) unless these misjudge the lamp itself by over 0.2 %");
+    command->add_flag("--plain-sums", options->plain, "plain sums at the bands, for every lamp")
+        ->excludes(e308);
     command->add_option("--against", options->against,
                         "CIEDE2000 to the colour of this matrix, under each illuminant");
     command->add_option("--polygons", options->polygons,

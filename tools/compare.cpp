@@ -3,6 +3,7 @@
 #include "host/film/spectral_image.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
 
@@ -35,6 +36,7 @@ Comparison compare_files(const CompareOptions& options) {
 }
 
 int run_compare(const CompareOptions& options, const CommonOptions& common) {
+    check_outputs(common, {}, {options.image, options.reference});
     const Comparison result = compare_files(options);
     const nlohmann::ordered_json json = {
         {"relmse", result.relmse},

@@ -1,5 +1,6 @@
 #include "host/study/converge.h"
 #include "host/error.h"
+#include "host/film/display_picture.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
 #include "host/study/converge_page.h"
@@ -7,6 +8,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
+#include "tools/outputs.h"
 #include "tools/parse_options.h"
 
 #include <fmt/format.h>
@@ -51,6 +53,8 @@ int run_converge(ConvergeCommand command, const CommandContext& context) {
     options.render.processes_on_machine = members_on_host(team);
     options.team = team.get();
     options.folder = output_directory(options.folder);
+    check_outputs(common, {}, {command.scene, options.reference}, options.folder);
+    check_display({});
     const Scene scene = load_scene(command.scene);
     prepare_opencl(common.threads);
     const Device device(common.device);

@@ -1,12 +1,20 @@
 #include "host/atomic_file.h"
 #include "host/error.h"
+#include "host/output_file.h"
+#include "host/paths.h"
+#include "host/report/json_file.h"
 #include "host/scene/mitsuba_import.h"
+#include "host/scene/scene_table.h"
+#include "host/scene/toml_document.h"
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/text_reader.h"
 #include "tools/command.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
+#include <functional>
 #include <memory>
 #include <sstream>
 
@@ -30,6 +38,29 @@ void refuse_form_options(const ConvertOptions& options, const char* why) {
                           "leave them out, or write a .csv of a re-radiation matrix");
 }
 
+using FileAction = std::function<void(const std::filesystem::path&)>;
+
+/// Writes what loads again, which a copy among the temporary files shows.
+void write_if_it_loads(const ConvertOptions& options, const FileAction& write,
+                       const FileAction& read) {
+    const std::filesystem::path copy =
+        temporary_beside(temporary_directory() / ("convert" + options.out.extension().string()));
+    const auto remove = [](const std::filesystem::path* file) {
+        std::error_code ignored;
+        std::filesystem::remove(*file, ignored);
+    };
+    const std::unique_ptr<const std::filesystem::path, decltype(remove)> removed(&copy, remove);
+    write(copy);
+    try {
+        read(copy);
+    } catch (const Error& error) {
+        throw_input_error({options.in.string()},
+                          fmt::format("would become a file that does not load: {}", error.what()),
+                          "convert into another format");
+    }
+    write(options.out);
+}
+
 void convert_matrix(const ConvertOptions& options) {
     const std::string ending = lower_case_ending(options.out);
     if (!is_matrix_ending(ending))
@@ -39,19 +70,50 @@ void convert_matrix(const ConvertOptions& options) {
     if (ending != ".csv")
         refuse_form_options(options, "are for CSV only");
     const ReradiationMatrix matrix = read_reradiation(options.in);
-    if (ending != ".csv")
-        return write_reradiation(options.out, matrix);
     MatrixCsvForm form;
     if (options.quantity == "density-per-nm")
         form.quantity = MatrixQuantity::DensityPerNm;
     form.rows_are_emission = options.orientation != "rows-excitation";
-    write_reradiation_csv(options.out, matrix, form);
+    write_if_it_loads(
+        options,
+        [&](const auto& file) {
+            ending == ".csv" ? write_reradiation_csv(file, matrix, form)
+                             : write_reradiation(file, matrix);
+        },
+        [](const auto& file) { read_reradiation(file); });
 }
 
 void convert_spectrum(const ConvertOptions& options) {
     refuse_form_options(options, "are for re-radiation matrices only");
     const NumberTable table = read_number_table(options.in, 2);
-    write_spectrum(options.out, table.columns[0], table.columns[1]);
+    write_if_it_loads(
+        options,
+        [&](const auto& file) { write_spectrum(file, table.columns[0], table.columns[1]); },
+        [](const auto& file) { read_spectrum(file); });
+}
+
+/// Nothing is warned about while it lives: what is read a second time has been warned about before.
+class Silence {
+public:
+    Silence() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
+    ~Silence() { spdlog::set_level(level_); }
+    Silence(const Silence&) = delete;
+    Silence& operator=(const Silence&) = delete;
+
+private:
+    spdlog::level::level_enum level_;
+};
+
+/// Refuses what would not load: in the XML, where its place is known, then as it would be written.
+void check_scene(const ConvertOptions& options, const std::string& text) {
+    const Silence silence;
+    load_scene(options.in);
+    try {
+        scene_from_table(parse_toml(options.out.string(), text), options.out);
+    } catch (const Error& error) {
+        throw_input_error({options.in.string()},
+                          fmt::format("would become a scene that does not load: {}", error.what()));
+    }
 }
 
 /// A scene of Mitsuba 3 as one of this program; files keep their places.
@@ -63,16 +125,30 @@ void convert_scene(const ConvertOptions& options) {
     text << "# made of " << options.in.filename().string() << " by reradiant convert\n"
          << toml::toml_formatter(mitsuba_scene_table(options.in, options.out.parent_path()))
          << '\n';
+    check_scene(options, text.str());
     write_text_atomically(options.out, text.str());
 }
 
-void convert(const ConvertOptions& options) {
-    if (is_mitsuba_scene(options.in))
+/// What was converted.
+const char* convert(const ConvertOptions& options) {
+    if (is_mitsuba_scene(options.in)) {
         convert_scene(options);
-    else if (holds_reradiation(options.in))
+        return "scene";
+    }
+    if (holds_reradiation(options.in)) {
         convert_matrix(options);
-    else
-        convert_spectrum(options);
+        return "re-radiation matrix";
+    }
+    convert_spectrum(options);
+    return "spectrum";
+}
+
+int run_convert(const ConvertOptions& options, const CommonOptions& common) {
+    check_outputs(common, {{"OUT", options.out}});
+    const char* const kind = convert(options);
+    write_json(common.json,
+               {{"kind", kind}, {"in", options.in.string()}, {"out", options.out.string()}});
+    return 0;
 }
 
 } // namespace
@@ -94,10 +170,8 @@ void add_convert_command(CLI::App& program, CommandContext& context) {
     command->footer("Examples:\n"
                     "  reradiant convert paint.bfc paint.csv\n"
                     "  reradiant convert scene.xml scene.toml");
-    command->callback([options, &context] {
-        convert(*options);
-        context.exit_code = 0;
-    });
+    command->callback(
+        [options, &context] { context.exit_code = run_convert(*options, context.common); });
 }
 
 } // namespace reradiant

@@ -1,8 +1,11 @@
 #include "host/device/device.h"
+#include "host/device/driver_list.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 namespace reradiant {
 
@@ -24,6 +27,7 @@ nlohmann::ordered_json to_json(const DeviceInfo& device) {
 }
 
 int run_devices(const CommonOptions& common) {
+    check_outputs(common, {});
     prepare_opencl(common.threads);
     const std::vector<DeviceInfo> devices = list_devices();
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -37,7 +41,13 @@ int run_devices(const CommonOptions& common) {
     }
     if (devices.empty())
         Device("0"); // throws the error that says what to install
-    write_json(common.json, {{"devices", list}});
+    nlohmann::ordered_json absent = nlohmann::ordered_json::array();
+    for (const AbsentDriver& driver : absent_drivers()) {
+        spdlog::warn("{}", absent_driver_text(driver));
+        absent.push_back(
+            {{"file", driver.file}, {"library", driver.library}, {"reason", driver.reason}});
+    }
+    write_json(common.json, {{"devices", list}, {"not_loaded", absent}});
     return 0;
 }
 

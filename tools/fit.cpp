@@ -11,7 +11,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
-#include "tools/parse_options.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -133,11 +133,12 @@ std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings set
 }
 
 int run_fit(const FitOptions& options, const CommonOptions& common) {
+    check_outputs(common,
+                  {{"--output", options.output, {".csv", ".exr", ".bfc"}, true},
+                   {"--report", options.report, {".html"}},
+                   {"--model-file", options.model_file, {".toml"}}},
+                  {options.data, options.stack});
     const FitSettings settings = settings_of(options, common);
-    for (const std::filesystem::path* file :
-         {&options.output, &options.report, &options.model_file})
-        if (!file->empty())
-            check_output_folder(*file);
     const BispectralData data = read_bispectral_data(options.data);
     check_fit_memory(data, settings, options.memory_limit_bytes);
     const std::optional<FitResult> fitted = fit_and_keep(options, settings, data);

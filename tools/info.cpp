@@ -7,6 +7,7 @@
 #include "tools/command.h"
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
 
@@ -150,6 +151,7 @@ void add_info_command(CLI::App& program, CommandContext& context) {
     command->add_option("FILE", *file, "EXR, CSV, BFC, SPD or TOML file")->required();
     command->footer("Example: reradiant info out.exr");
     command->callback([file, &context] {
+        check_outputs(context.common, {}, {*file});
         const Json description = describe(*file);
         write_json(context.common.json, description);
         if (!context.common.quiet)

@@ -5,6 +5,7 @@
 #include "host/render/work_checkpoint.h"
 #include "host/scene/sha256.h"
 #include "tools/interrupt.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
 
@@ -36,9 +37,7 @@ std::string conductor_text(const ConductorValues& values) {
 KeptWork::KeptWork(const fs::path& output, SampleIdentity identity, double seconds)
     : identity_(std::move(identity)), seconds_(seconds) {
     identity_.push_back({"build", build_digest()});
-    std::error_code ignored;
-    if (!fs::exists(output, ignored) || fs::is_regular_file(output, ignored))
-        file_ = output.string() + ".checkpoint";
+    file_ = checkpoint_beside(output);
 }
 
 void KeptWork::resume(const std::function<void(const Json&)>& take) const {

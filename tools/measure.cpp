@@ -6,6 +6,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
+#include "tools/outputs.h"
 #include "tools/parse_options.h"
 
 #include <fmt/format.h>
@@ -115,7 +116,7 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
     if (!options.bands.empty()) {
         request.bands = parse_bands_option(options.bands);
     }
-    check_output_folder(options.output);
+    check_outputs(common, {{"--output", options.output, {".csv"}}}, {options.material});
     // what computes in parallel asks the library how many threads there are
     std::optional<tbb::global_control> threads;
     if (common.threads > 0) {

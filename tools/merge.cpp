@@ -1,9 +1,10 @@
 #include "host/film/merge.h"
 #include "host/error.h"
+#include "host/film/display_picture.h"
 #include "host/film/image_memory.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
-#include "tools/parse_options.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -22,7 +23,11 @@ struct MergeCommand {
 };
 
 int run_merge(const MergeCommand& command, const CommandContext& context) {
-    check_output_folder(command.output);
+    check_outputs(context.common,
+                  {{"--output", command.output, {".exr"}}, {"--png", command.png, {".png"}}});
+    check_exposure(command.display.exposure_ev);
+    if (!command.png.empty())
+        check_display(command.display);
     check_merge_memory(command.parts, command.memory_limit_bytes);
     MergedImage merged = merge_images(command.parts);
     for (const SampleRange& gap : merged.gaps)

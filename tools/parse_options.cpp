@@ -78,23 +78,4 @@ SampleRange parse_sample_range_option(const std::string& text) {
     return {*first, *end};
 }
 
-void check_output_folder(const std::filesystem::path& output) {
-    const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";
-    std::error_code ignored;
-    if (!std::filesystem::is_directory(folder, ignored))
-        throw_input_error({output.string()},
-                          fmt::format("the folder {} does not exist", folder.string()),
-                          "make it first, or write elsewhere");
-}
-
-std::filesystem::path output_directory(const std::filesystem::path& given) {
-    const std::filesystem::path folder = given.has_filename() ? given : given.parent_path();
-    check_output_folder(folder);
-    std::error_code ignored;
-    if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored))
-        throw_input_error({folder.string()}, "is a file, not a folder",
-                          "give the name of a folder");
-    return folder;
-}
-
 } // namespace reradiant

@@ -6,7 +6,6 @@
 #include "host/spectral/grid.h"
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 namespace reradiant {
@@ -23,11 +22,5 @@ WavelengthOptions parse_wavelengths_option(const std::string& text);
 
 /// --sample-range A:B with A < B
 SampleRange parse_sample_range_option(const std::string& text);
-
-/// Refuses an output whose folder does not exist, before hours of work go into it.
-void check_output_folder(const std::filesystem::path& output);
-/// A folder to write results into, without a slash at its end. It need not exist, but the folder
-/// that it lies in must, and it must not be a file.
-std::filesystem::path output_directory(const std::filesystem::path& given);
 
 } // namespace reradiant

@@ -1,6 +1,7 @@
 #include "tools/reference.h"
 
 #include "host/film/png.h"
+#include "host/paths.h"
 #include "host/scene/key_reference.h"
 #include "host/scene/scene_table.h"
 #include "host/scene/toml_document.h"
@@ -79,7 +80,7 @@ material = [
 class SampleFiles {
 public:
     SampleFiles()
-        : folder(fs::temp_directory_path() / fmt::format("reradiant-reference-{}", ::getpid())) {
+        : folder(temporary_directory() / fmt::format("reradiant-reference-{}", ::getpid())) {
         fs::create_directories(folder);
         std::ofstream(folder / "mesh.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
         std::ofstream(folder / "grey.csv") << "nm,value\n380,0.5\n780,0.5\n";

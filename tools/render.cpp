@@ -1,5 +1,6 @@
 #include "host/device/device.h"
 #include "host/error.h"
+#include "host/film/display_picture.h"
 #include "host/film/merge.h"
 #include "host/film/spectral_image.h"
 #include "host/render/render_identity.h"
@@ -12,6 +13,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
+#include "tools/outputs.h"
 #include "tools/parse_options.h"
 #include "tools/tev_preview.h"
 
@@ -35,13 +37,9 @@ struct RenderCommand {
                 phase = "random";
     bool samples_given = false;
 
-    /// Beside the image; none where the image goes to a device or pipe.
-    std::filesystem::path checkpoint_file() const {
-        std::error_code ignored;
-        if (std::filesystem::exists(output, ignored) &&
-            !std::filesystem::is_regular_file(output, ignored))
-            return {};
-        return output.string() + ".checkpoint";
+    bool shows_a_display() const {
+        return !png.empty() || !display.ocio_config.empty() || !display.display.empty() ||
+               !display.view.empty();
     }
 };
 
@@ -56,6 +54,7 @@ void apply_texts(RenderCommand& command, const CommonOptions& common) {
                           "leave the count of --wavelengths away");
     command.render.wavelengths.keep_all = command.render.all_features;
     command.render.band_variance = command.variance == "bands";
+    check_tev_address(command.tev);
     if (!command.bands.empty())
         command.render.bands = parse_bands_option(command.bands);
     if (!command.sample_range.empty()) {
@@ -88,7 +87,8 @@ void print_summary(const RenderResult& result, const RenderCommand& command) {
 /// Whether the output is this render already, with as many samples.
 bool is_done(const RenderCommand& command, const Scene& scene, const Device& device) {
     std::error_code ignored;
-    if (!command.render.resume || std::filesystem::exists(command.checkpoint_file(), ignored) ||
+    if (!command.render.resume ||
+        std::filesystem::exists(checkpoint_beside(command.output), ignored) ||
         !std::filesystem::is_regular_file(command.output, ignored))
         return false;
     const SpectralImage image = read_spectral_exr(command.output);
@@ -151,11 +151,16 @@ int run_render(RenderCommand command, const CommandContext& context) {
     CommonOptions common = context.common;
     const std::unique_ptr<Team> team = join_team(common);
     apply_texts(command, common);
-    check_output_folder(command.output);
+    check_outputs(common,
+                  {{"--output", command.output, {".exr"}}, {"--png", command.png, {".png"}}},
+                  {command.scene});
+    check_exposure(command.display.exposure_ev);
+    if (command.shows_a_display())
+        check_display(command.display);
     const Scene scene = load_scene(command.scene);
     prepare_opencl(common.threads);
     const Device device(common.device);
-    command.render.checkpoint = command.checkpoint_file();
+    command.render.checkpoint = checkpoint_beside(command.output);
     command.render.processes_on_machine = members_on_host(team);
     const bool done = is_done(command, scene, device);
     if (team ? team->from_leader(done) != 0 : done) {

@@ -1,5 +1,6 @@
 #include "host/study/study.h"
 #include "host/atomic_file.h"
+#include "host/film/display_picture.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
 #include "host/study/contact_sheet.h"
@@ -8,7 +9,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
-#include "tools/parse_options.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
 
@@ -64,11 +65,14 @@ int run(StudyCommand command, const CommandContext& context) {
     const std::unique_ptr<Team> team = join_team(common);
     StudyOptions& options = command.options;
     options.folder = output_directory(options.folder);
+    check_outputs(common, {}, {command.study}, options.folder);
     options.render.seed = common.seed;
     options.render.threads = common.threads;
     options.render.processes_on_machine = members_on_host(team);
     options.team = team.get();
     const Study study = load_study(command.study);
+    if (study.rendering)
+        check_display({});
     std::optional<Device> device;
     if (study.rendering) {
         prepare_opencl(common.threads);

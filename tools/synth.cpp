@@ -3,7 +3,7 @@
 #include "host/report/json_file.h"
 #include "host/spectral/matrix_io.h"
 #include "tools/command.h"
-#include "tools/parse_options.h"
+#include "tools/outputs.h"
 
 #include <fmt/format.h>
 
@@ -26,14 +26,10 @@ void check_outputs(const SynthOptions& options, const CommonOptions& common) {
     if (lower_case_ending(options.output) != ".csv")
         throw_input_error({options.output.string()}, "data are written as .csv only",
                           "name a .csv; `reradiant convert` makes other formats of a bare matrix");
-    const std::string ending = lower_case_ending(options.truth);
-    if (!options.truth.empty() && ending != ".csv" && ending != ".exr" && ending != ".bfc")
-        throw_input_error({options.truth.string()},
-                          fmt::format("a re-radiation matrix does not fit into '{}'", ending),
-                          "write .csv, .exr or .bfc");
-    for (const fs::path& output : {options.output, options.truth, common.json})
-        if (!output.empty())
-            check_output_folder(output);
+    check_outputs(common,
+                  {{"--output", options.output, {".csv"}},
+                   {"--truth", options.truth, {".csv", ".exr", ".bfc"}, true}},
+                  {options.recipe});
 }
 
 /// Errors of meaning have no place of their own: they are placed at the recipe.

@@ -87,8 +87,7 @@ std::string tile(const std::string& name, const std::vector<float>& rgb, int ima
 
 } // namespace
 
-TevPreview::TevPreview(const std::string& address, std::string name)
-    : name_(std::move(name)), address_(address) {
+void check_tev_address(const std::string& address) {
     if (address.empty())
         return;
     const std::size_t colon = address.rfind(':');
@@ -99,6 +98,14 @@ TevPreview::TevPreview(const std::string& address, std::string name)
     if (!has_port || parsed.ec != std::errc{} || parsed.ptr != end || port < 1 || port > 65535)
         throw_input_error({}, fmt::format("--tev '{}' is not an address", address),
                           "write HOST:PORT, like localhost:14158");
+}
+
+TevPreview::TevPreview(const std::string& address, std::string name)
+    : name_(std::move(name)), address_(address) {
+    check_tev_address(address);
+    if (address.empty())
+        return;
+    const std::size_t colon = address.rfind(':');
     connect_to(address.substr(0, colon), address.substr(colon + 1));
 }
 

@@ -6,12 +6,15 @@
 
 namespace reradiant {
 
+/// Input Error unless an address is HOST:PORT or empty.
+void check_tev_address(const std::string& address);
+
 /// Shows an image in the viewer tev (Thomas Mueller) while it is rendered, by the viewer's TCP
 /// protocol: one message creates the image, each update sends its linear sRGB in tiles. Whatever
 /// fails is warned about once, and nothing is sent from there on: a preview never ends a render.
 class TevPreview {
 public:
-    /// address: HOST:PORT; empty: nothing is shown. Input Error when it is not of that form.
+    /// address: HOST:PORT, as check_tev_address wants it; empty: nothing is shown.
     TevPreview(const std::string& address, std::string name);
     ~TevPreview();
     TevPreview(const TevPreview&) = delete;

@@ -7,6 +7,7 @@
 #include "tools/command.h"
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
+#include "tools/outputs.h"
 #include "tools/reference.h"
 
 #include <fmt/format.h>
@@ -153,6 +154,7 @@ void add_validate_command(CLI::App& program, CommandContext& context) {
             fmt::print("{}", format_reference());
             return;
         }
+        check_outputs(context.common, {}, {options->file});
         const Json result = validate(options->file);
         write_json(context.common.json, result);
         if (!context.common.quiet) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -60,8 +61,16 @@ CheckReport check_device(const Device& device, const CheckOptions& options,
 void save_results(const std::filesystem::path& file, const Device& device,
                   const CheckReport& report);
 
-/// Adds a failure to every function whose results moved by more than both runs' budgets since the
-/// file was saved, or that the file does not hold. Input Error when it is no such file.
-void compare_results(const std::filesystem::path& file, CheckReport& report);
+/// What save_results wrote, by function.
+struct SavedResults {
+    std::filesystem::path file;
+    std::map<std::string, CheckSample> functions;
+};
+/// Input Error when the file is none of save_results.
+SavedResults read_saved_results(const std::filesystem::path& file);
+
+/// Adds a failure to every function whose results moved by more than both runs' budgets since they
+/// were saved, or that was not saved.
+void compare_results(const SavedResults& saved, CheckReport& report);
 
 } // namespace reradiant

@@ -31,7 +31,7 @@ std::vector<float> numbers_of(const nlohmann::json& list) {
     return values;
 }
 
-nlohmann::json read_saved(const std::filesystem::path& file) {
+nlohmann::json functions_of(const std::filesystem::path& file) {
     std::ifstream stream = open_regular_file(file);
     if (!stream)
         throw_input_error({file.string()}, "cannot be opened",
@@ -42,7 +42,7 @@ nlohmann::json read_saved(const std::filesystem::path& file) {
         !json.at("functions").is_object())
         throw_input_error({file.string()}, "holds no results of `reradiant check`",
                           "name a file that `reradiant check --save` wrote");
-    return json;
+    return json.at("functions");
 }
 
 /// Largest movement over what both runs may be off; sizes are equal.
@@ -59,24 +59,24 @@ double movement(const CheckSample& now, const CheckSample& then) {
     return worst;
 }
 
-void compare_function(FunctionReport& function, const nlohmann::json& saved,
-                      const std::filesystem::path& file) {
-    if (!saved.contains(function.name)) {
-        function.failures.push_back(fmt::format("{} does not hold it", file.string()));
+void compare_function(FunctionReport& function, const SavedResults& saved) {
+    const std::string file = saved.file.string();
+    const auto entry = saved.functions.find(function.name);
+    if (entry == saved.functions.end()) {
+        function.failures.push_back(fmt::format("{} does not hold it", file));
         return;
     }
-    const nlohmann::json& entry = saved.at(function.name);
-    const CheckSample then{numbers_of(entry.at("results")), numbers_of(entry.at("budgets"))};
+    const CheckSample& then = entry->second;
     if (then.results.size() != function.sample.results.size() ||
         then.budgets.size() != function.sample.budgets.size()) {
-        function.failures.push_back(fmt::format(
-            "{} holds other inputs; save it anew with the same --samples", file.string()));
+        function.failures.push_back(
+            fmt::format("{} holds other inputs; save it anew with the same --samples", file));
         return;
     }
     const double moved = movement(function.sample, then);
     if (moved > 1.0)
         function.failures.push_back(
-            fmt::format("results moved by {:.3g} of their budgets since {}", moved, file.string()));
+            fmt::format("results moved by {:.3g} of their budgets since {}", moved, file));
 }
 
 } // namespace
@@ -93,15 +93,23 @@ void save_results(const std::filesystem::path& file, const Device& device,
                       {"functions", functions}});
 }
 
-void compare_results(const std::filesystem::path& file, CheckReport& report) {
-    const nlohmann::json saved = read_saved(file);
+SavedResults read_saved_results(const std::filesystem::path& file) {
+    SavedResults saved{file, {}};
+    const nlohmann::json functions = functions_of(file);
     try {
-        for (FunctionReport& function : report.functions)
-            compare_function(function, saved.at("functions"), file);
+        for (const auto& [name, entry] : functions.items())
+            saved.functions[name] = {numbers_of(entry.at("results")),
+                                     numbers_of(entry.at("budgets"))};
     } catch (const nlohmann::json::exception& error) {
         throw_input_error({file.string()}, fmt::format("is damaged: {}", error.what()),
                           "save it anew with `reradiant check --save`");
     }
+    return saved;
+}
+
+void compare_results(const SavedResults& saved, CheckReport& report) {
+    for (FunctionReport& function : report.functions)
+        compare_function(function, saved);
 }
 
 } // namespace reradiant

@@ -1,6 +1,7 @@
 #include "host/device/device.h"
 
 #include "host/device/driver_cache.h"
+#include "host/device/driver_list.h"
 #include "host/error.h"
 
 #include <fmt/format.h>
@@ -92,11 +93,20 @@ bool fits(const DeviceInfo& info, const std::string& wanted) {
     return lower(info.name).find(lower(wanted)) != std::string::npos;
 }
 
+[[noreturn]] void throw_no_device() {
+    std::string what = "no OpenCL device was found";
+    for (const AbsentDriver& driver : absent_drivers())
+        what += "; " + absent_driver_text(driver);
+    if (const std::string problem = driver_cache_problem(); !problem.empty())
+        throw_runtime_error(what + "; " + problem, "set RERADIANT_CACHE to a folder that can be "
+                                                   "written to");
+    throw_runtime_error(what, "install a driver, for instance the package pocl-opencl-icd");
+}
+
 FoundDevice choose(const std::string& wanted) {
     const std::vector<FoundDevice> found = find_devices();
     if (found.empty())
-        throw_runtime_error("no OpenCL device was found",
-                            "install a driver, for instance the package pocl-opencl-icd");
+        throw_no_device();
     std::string names;
     for (const FoundDevice& candidate : found) {
         if (wanted.empty() || fits(candidate.info, wanted))

@@ -2,6 +2,7 @@
 
 #include "host/paths.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <cerrno>
@@ -9,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
 #include <string>
 #include <unistd.h>
 
@@ -40,12 +42,6 @@ Users users_of(const fs::path& folder) {
     return users;
 }
 
-bool is_usable(const fs::path& folder) {
-    std::error_code ignored;
-    fs::create_directories(folder, ignored);
-    return fs::is_directory(folder, ignored) && ::access(folder.c_str(), W_OK | X_OK) == 0;
-}
-
 /// Moved away first, so that a program that starts meanwhile finds all of it or nothing.
 void discard(const fs::path& folder) {
     std::error_code ignored;
@@ -70,22 +66,46 @@ void mark(const fs::path& folder) {
     });
 }
 
+/// What the user chose stays, unless PoCL could not use it: it would have no device then.
+bool user_has_chosen() {
+    const char* const chosen = std::getenv("POCL_CACHE_DIR");
+    if (chosen == nullptr || *chosen == '\0')
+        return false;
+    const std::string reason = why_unusable(chosen);
+    if (!reason.empty())
+        spdlog::warn("$POCL_CACHE_DIR, {}, cannot be used: {}; PoCL's kernels go elsewhere", chosen,
+                     reason);
+    return reason.empty();
+}
+
+std::string problem; ///< what driver_cache_problem returns
+
+void choose_folder() {
+    if (user_has_chosen())
+        return;
+    const fs::path folder = cache_directory() / "pocl";
+    const Users users = users_of(folder);
+    if (users.some_died && !users.some_run)
+        discard(folder);
+    const std::string reason = why_unusable(folder);
+    if (!reason.empty()) {
+        problem =
+            fmt::format("PoCL has no folder for its kernels: {}: {}", folder.string(), reason);
+        return;
+    }
+    ::setenv("POCL_CACHE_DIR", folder.c_str(), 1);
+    mark(folder);
+}
+
 } // namespace
 
 void prepare_driver_cache() {
-    const std::string temporary = "reradiant-" + std::to_string(::getuid());
-    for (const fs::path& folder :
-         {cache_directory() / "pocl", fs::temp_directory_path() / temporary / "pocl"}) {
-        const Users users = users_of(folder);
-        if (users.some_died && !users.some_run)
-            discard(folder);
-        if (!is_usable(folder))
-            continue;
-        ::setenv("POCL_CACHE_DIR", folder.c_str(), 0); // what the user chose stays
-        if (own_mark.empty())
-            mark(folder);
-        return;
-    }
+    static std::once_flag once;
+    std::call_once(once, choose_folder);
+}
+
+std::string driver_cache_problem() {
+    return problem;
 }
 
 } // namespace reradiant

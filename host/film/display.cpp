@@ -112,9 +112,13 @@ DisplayProcessor config_processor(const std::string& name, const DisplayOptions&
     if (std::filesystem::exists(name, ignored) && !std::filesystem::is_regular_file(name, ignored))
         throw_input_error({name}, "is no regular file", "give a configuration file");
     const auto config = OCIO::Config::CreateFromFile(name.c_str());
+    const std::vector<std::string> displays = displays_of(*config);
+    if (displays.empty())
+        throw_input_error({name}, "the OpenColorIO configuration has no display",
+                          "add one under displays:");
     const std::string display =
         options.display.empty() ? config->getDefaultDisplay() : options.display;
-    check_name("display", display, displays_of(*config));
+    check_name("display", display, displays);
     const std::string view =
         options.view.empty() ? config->getDefaultView(display.c_str()) : options.view;
     check_name("view", view, views_of(*config, display));
@@ -178,6 +182,17 @@ std::vector<std::uint8_t> quantise(const std::vector<float>& display, std::size_
 }
 
 } // namespace
+
+void check_exposure(double exposure_ev) {
+    constexpr double most_ev = 100.0;
+    if (!(std::abs(exposure_ev) <= most_ev))
+        throw_input_error({}, fmt::format("--exposure is {}", exposure_ev),
+                          fmt::format("it must be from {} to {}", -most_ev, most_ev));
+}
+
+void check_display(const DisplayOptions& options) {
+    display_processor(options);
+}
 
 DisplayPicture display_picture(const SpectralImage& image, const DisplayOptions& options) {
     const DisplayProcessor display = display_processor(options);

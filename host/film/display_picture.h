@@ -6,6 +6,12 @@
 
 namespace reradiant {
 
+/// Input Error for a configuration, display or view that no image can be shown through, with the
+/// names that there are.
+void check_display(const DisplayOptions& options);
+/// Input Error for an exposure that is no number or beyond 100 EV to either side.
+void check_exposure(double exposure_ev);
+
 /// 8 bit display values, (height, width, 3), through OpenColorIO: what write_display_png writes.
 struct DisplayPicture {
     std::vector<std::uint8_t> rgb;

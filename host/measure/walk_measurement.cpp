@@ -33,8 +33,27 @@ std::vector<Detector> detectors_of(const MeasureRequest& request) {
     return detectors;
 }
 
-/// Appends the rows of one pair of directions. `matrix` says which wavelength pairs are possible.
-void add_rows(Measurement& measurement, const Eigen::MatrixXd& matrix, const MeasureRow& angles,
+using Pairs = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// The pairs (emission, excitation) that light can leave and come at: the diagonal, Stokes shifts,
+/// and where the matrix has entries above the diagonal, what these reach in any number of steps,
+/// between which layers above send the light back. Only the diagonal where nothing fluoresces.
+Pairs possible_pairs(const Eigen::MatrixXd& matrix, int bands, bool has_layers) {
+    Pairs possible = Pairs::Identity(bands, bands);
+    if (matrix.size() == 0 || matrix.isDiagonal(0.0))
+        return possible;
+    possible = (matrix.array() != 0.0).matrix();
+    for (int via = 0; has_layers && via < bands; ++via) // Warshall's transitive closure
+        for (int i = 0; i < bands; ++i)
+            if (possible(via, i))
+                possible.col(i) = possible.col(i).array() || possible.col(via).array();
+    for (int i = 0; i < bands; ++i)
+        possible.col(i).tail(bands - i).setConstant(true);
+    return possible;
+}
+
+/// Appends the rows of one pair of directions.
+void add_rows(Measurement& measurement, const Pairs& possible, const MeasureRow& angles,
               const WalkTally::Parts& mean, const WalkTally::Parts& error) {
     const auto row = [&](int i, int o, double value, double standard_error, MeasuredPart part) {
         MeasureRow& added = measurement.rows.emplace_back(angles);
@@ -45,11 +64,11 @@ void add_rows(Measurement& measurement, const Eigen::MatrixXd& matrix, const Mea
         added.part = part;
     };
     const int bands = measurement.bands.count;
-    const bool fluorescent = mean.diffuse.cols() == bands && !matrix.isDiagonal(0.0);
+    const bool is_full = mean.diffuse.cols() == bands;
     for (int i = 0; i < bands; ++i) {
         for (int o = 0; o < bands; ++o) {
-            if (o == i || (fluorescent && (o > i || matrix(o, i) != 0.0))) {
-                const int column = fluorescent ? i : 0;
+            if (possible(o, i)) {
+                const int column = is_full ? i : 0;
                 row(i, o, mean.diffuse(o, column), error.diffuse(o, column), MeasuredPart::Diffuse);
             }
         }
@@ -124,6 +143,7 @@ Measurement measure_by_walk(const LayerStack& stack, const SubstrateValues& subs
         wo.push_back(detector.w);
     }
     const long samples = request.samples > 0 ? request.samples : default_walk_samples;
+    const Pairs possible = possible_pairs(substrate.matrix, bands.count, !stack.layers.empty());
     double delta = 0.0, lost = 0.0;
     WalkJournal journal(request);
     for (const double theta_i : request.theta_i_deg) {
@@ -132,14 +152,12 @@ Measurement measure_by_walk(const LayerStack& stack, const SubstrateValues& subs
         const WalkTally &mean = estimate.mean, &error = estimate.standard_error;
         MeasureRow angles{theta_i, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
         if (request.hemispherical) {
-            add_rows(measurement, substrate.matrix, angles, mean.hemispherical,
-                     error.hemispherical);
+            add_rows(measurement, possible, angles, mean.hemispherical, error.hemispherical);
         }
         for (std::size_t k = 0; k < detectors.size(); ++k) {
             angles.theta_o_deg = detectors[k].theta_deg;
             angles.phi_deg = detectors[k].phi_deg;
-            add_rows(measurement, substrate.matrix, angles, mean.directional[k],
-                     error.directional[k]);
+            add_rows(measurement, possible, angles, mean.directional[k], error.directional[k]);
         }
         delta = std::max(delta, mean.delta.maxCoeff());
         lost = std::max(lost, mean.lost.maxCoeff());

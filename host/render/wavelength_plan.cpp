@@ -22,8 +22,19 @@ double step_tolerance(double step_nm) {
     return 1e-6 * step_nm;
 }
 
+/// Marks the cells that something excited in marked ones re-radiates to; whether any was new.
+bool mark_re_radiated(const Eigen::MatrixXd& matrix, std::vector<bool>& active) {
+    bool any = false;
+    for (Eigen::Index i = 0; i < matrix.cols(); ++i)
+        for (Eigen::Index o = 0; active[static_cast<std::size_t>(i)] && o < matrix.rows(); ++o)
+            if (matrix(o, i) > 0.0 && !active[static_cast<std::size_t>(o)])
+                any = active[static_cast<std::size_t>(o)] = true;
+    return any;
+}
+
 /// Which cells can carry light at all: those a lamp emits in, and those that something excited
-/// there can re-radiate to.
+/// there can re-radiate to, in as many steps as it takes: by one material and then another, or
+/// by one that emits at shorter wavelengths, too.
 std::vector<bool> active_cells(const Scene& scene, const WavelengthGrid& cells) {
     const auto count = static_cast<std::size_t>(cells.count);
     std::vector<bool> active(count, false);
@@ -32,28 +43,53 @@ std::vector<bool> active_cells(const Scene& scene, const WavelengthGrid& cells) 
             if (!light_spectrum(light).is_zero_within(cells.lower_edge_nm(c),
                                                       cells.upper_edge_nm(c)))
                 active[static_cast<std::size_t>(c)] = true;
-    for (const Material& material : scene.materials) {
-        if (!material.substrate.is_fluorescent())
-            continue;
-        const Eigen::MatrixXd matrix = material.substrate.fluorescence_on(cells);
-        for (int i = 0; i < cells.count; ++i)
-            for (int o = 0; active[static_cast<std::size_t>(i)] && o < cells.count; ++o)
-                if (matrix(o, i) > 0.0)
-                    active[static_cast<std::size_t>(o)] = true;
+    std::vector<Eigen::MatrixXd> matrices;
+    for (const Material& material : scene.materials)
+        if (material.substrate.is_fluorescent())
+            matrices.push_back(material.substrate.fluorescence_on(cells));
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const Eigen::MatrixXd& matrix : matrices)
+            changed = mark_re_radiated(matrix, active) || changed;
     }
     return active;
 }
 
-/// The film's cells, with whole steps added below as far as something can be excited.
+/// That some light is emitted below the wavelength that excites it.
+bool has_anti_stokes(const Substrate& substrate) {
+    if (!substrate.matrix)
+        return false; // fluorophores emit above it only
+    const ReradiationMatrix& matrix = *substrate.matrix;
+    const Eigen::MatrixXd fluorescence = matrix.fluorescent_part();
+    for (int i = 0; i < matrix.excitation.count; ++i)
+        for (int o = 0; o < matrix.emission.count; ++o)
+            if (fluorescence(o, i) > 0.0 &&
+                matrix.emission.centre_nm(o) < matrix.excitation.centre_nm(i))
+                return true;
+    return false;
+}
+
+/// Whole steps from an edge of the film to a wavelength beyond it.
+int steps_beyond(double gap_nm, double step_nm) {
+    return std::max(0, static_cast<int>(std::ceil((gap_nm - step_tolerance(step_nm)) / step_nm)));
+}
+
+/// The film's cells, with whole steps added below as far as something can be excited, and above as
+/// far as something that emits at shorter wavelengths can be.
 WavelengthGrid cells_with_excitation(const Scene& scene, const WavelengthGrid& film) {
-    double lowest = film.lower_edge_nm(0);
-    for (const Material& material : scene.materials)
-        if (material.substrate.is_fluorescent())
-            lowest = std::min(lowest, material.substrate.excitation_range_nm()[0]);
-    const double gap = film.lower_edge_nm(0) - lowest;
-    const int added = std::max(
-        0, static_cast<int>(std::ceil((gap - step_tolerance(film.step_nm)) / film.step_nm)));
-    return {film.from_nm - added * film.step_nm, film.step_nm, film.count + added};
+    const double from = film.lower_edge_nm(0), to = film.upper_edge_nm(film.count - 1);
+    double lowest = from, highest = to;
+    for (const Material& material : scene.materials) {
+        if (!material.substrate.is_fluorescent())
+            continue;
+        const auto [low, high] = material.substrate.excitation_range_nm();
+        lowest = std::min(lowest, low);
+        if (has_anti_stokes(material.substrate))
+            highest = std::max(highest, high);
+    }
+    const int below = steps_beyond(from - lowest, film.step_nm),
+              above = steps_beyond(highest - to, film.step_nm);
+    return {film.from_nm - below * film.step_nm, film.step_nm, film.count + below + above};
 }
 
 /// Cells above the film can only matter by anti-Stokes emission; cells below it only by exciting.

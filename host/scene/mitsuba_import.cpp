@@ -1,11 +1,13 @@
 #include "host/scene/mitsuba_import.h"
 
 #include "host/scene/mitsuba_scene.h"
+#include "host/scene/toml_document.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace reradiant {
 
@@ -32,10 +34,17 @@ std::string MitsubaScene::file_name(const pugi::xml_node& element, const std::st
     return failure || relative.empty() ? fs::absolute(file).string() : relative.string();
 }
 
-void MitsubaScene::add(const char* list, toml::table entry) {
+void MitsubaScene::add(const char* list, toml::table entry, const pugi::xml_node& element) {
+    place_keys(entry, document_.position(element));
     if (!table_.contains(list))
         table_.insert(list, toml::array{});
     table_[list].as_array()->push_back(std::move(entry));
+}
+
+void MitsubaScene::set(const char* key, toml::table entry, const pugi::xml_node& element) {
+    const SourcePosition position = document_.position(element);
+    place_keys(entry, position);
+    table_.insert_or_assign(placed_key(key, position), std::move(entry));
 }
 
 std::string MitsubaScene::unique_name(const std::string& wanted) {
@@ -77,6 +86,15 @@ void add_element(const pugi::xml_node& element, MitsubaScene& scene) {
                               "a scene holds sensor, integrator, emitters, shapes, bsdfs");
 }
 
+/// What a spectrum or a reflectance refuses without knowing where it stands is placed here.
+void add_element_in_place(const pugi::xml_node& element, MitsubaScene& scene) {
+    try {
+        add_element(element, scene);
+    } catch (const std::invalid_argument& error) {
+        scene.document().fail(element, error.what());
+    }
+}
+
 /// What no shape has may be of any kind.
 void warn_of_unused_bsdfs(const MitsubaScene& scene) {
     for (const pugi::xml_node& bsdf : scene.document().scene().children("bsdf"))
@@ -93,7 +111,7 @@ toml::table mitsuba_scene_table(const fs::path& file, const fs::path& base) {
     MitsubaScene scene(document, base);
     for (const pugi::xml_node& element : document.scene().children())
         if (element.type() == pugi::node_element)
-            add_element(element, scene);
+            add_element_in_place(element, scene);
     warn_of_unused_bsdfs(scene);
     if (!scene.table().contains("camera"))
         document.fail(document.scene(), "the scene has no sensor",

@@ -13,16 +13,27 @@ using Vector = Eigen::Vector3d;
 
 toml::table point_light(const MitsubaObject& emitter, MitsubaScene& scene) {
     const Vector at = emitter.transform_or_identity("to_world").block<3, 1>(0, 3);
-    return toml::table{{"type", "point"},
-                       {"position", toml_vector(emitter.point("position").value_or(at))},
-                       {"intensity", mitsuba_emission(emitter, "intensity", scene)}};
+    toml::table light{{"type", "point"},
+                      {"position", toml_vector(emitter.point("position").value_or(at))}};
+    light.insert(emitter.key("intensity", "intensity"),
+                 mitsuba_emission(emitter, "intensity", scene));
+    return light;
 }
 
 toml::table directional_light(const MitsubaObject& emitter, MitsubaScene& scene) {
     const Vector along = emitter.transform_or_identity("to_world").block<3, 1>(0, 2);
-    return toml::table{{"type", "directional"},
-                       {"direction", toml_vector(emitter.point("direction").value_or(along))},
-                       {"irradiance", mitsuba_emission(emitter, "irradiance", scene)}};
+    toml::table light{{"type", "directional"}};
+    light.insert(emitter.key("direction", "direction"),
+                 toml_vector(emitter.point("direction").value_or(along)));
+    light.insert(emitter.key("irradiance", "irradiance"),
+                 mitsuba_emission(emitter, "irradiance", scene));
+    return light;
+}
+
+toml::table constant_light(const MitsubaObject& emitter, MitsubaScene& scene) {
+    toml::table light{{"type", "environment"}};
+    light.insert(emitter.key("radiance", "radiance"), mitsuba_emission(emitter, "radiance", scene));
+    return light;
 }
 
 /// Degrees about +y; input Error for any other transform.
@@ -43,11 +54,12 @@ toml::table environment_map(const MitsubaObject& emitter, MitsubaScene& scene) {
     // Mitsuba's middle column looks along +z, this program's along -z.
     const double degrees = turn_about_y(emitter) + 180.0;
     emitter.ignore("mis_compensation", "it says how to sample, not what");
-    return toml::table{{"type", "environment"},
-                       {"file", scene.file_name(emitter, "filename")},
-                       {"rotation_deg", degrees},
-                       {"radiance", toml::table{{"illuminant", "D65"},
-                                                {"scale", emitter.number_or("scale", 1.0)}}}};
+    toml::table light{{"type", "environment"}, {"rotation_deg", degrees}};
+    light.insert(emitter.key("file", "filename"), scene.file_name(emitter, "filename"));
+    toml::table radiance{{"illuminant", "D65"}};
+    radiance.insert(emitter.key("scale", "scale"), emitter.number_or("scale", 1.0));
+    light.insert(emitter.key("radiance", "scale"), std::move(radiance));
+    return light;
 }
 
 } // namespace
@@ -60,14 +72,13 @@ void add_mitsuba_emitter(const pugi::xml_node& element, MitsubaScene& scene) {
     else if (emitter.type() == "directional")
         light = directional_light(emitter, scene);
     else if (emitter.type() == "constant")
-        light = toml::table{{"type", "environment"},
-                            {"radiance", mitsuba_emission(emitter, "radiance", scene)}};
+        light = constant_light(emitter, scene);
     else if (emitter.type() == "envmap")
         light = environment_map(emitter, scene);
     else
         emitter.refuse_type({"area (in a shape)", "point", "directional", "constant", "envmap"});
     emitter.finish();
-    scene.add("light", std::move(light));
+    scene.add("light", std::move(light), element);
 }
 
 } // namespace reradiant

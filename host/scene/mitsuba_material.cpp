@@ -53,7 +53,7 @@ void insert_roughness(toml::table& into, const MitsubaObject& bsdf) {
     for (const char* name : {"alpha_u", "alpha_v"})
         if (const pugi::xml_node found = bsdf.find(name))
             bsdf.document().fail(found, "anisotropic roughness is not supported", "give alpha");
-    into.insert("alpha", bsdf.number_or("alpha", 0.1));
+    into.insert(bsdf.key("alpha", "alpha"), bsdf.number_or("alpha", 0.1));
     const std::string distribution = bsdf.text_or("distribution", "beckmann");
     if (distribution != "beckmann" && distribution != "ggx")
         bsdf.document().fail(bsdf.find("distribution"),
@@ -109,7 +109,8 @@ bool has_linear_base(const MitsubaObject& bsdf, toml::table& material, const tom
 toml::table plastic(const MitsubaObject& bsdf, bool rough, MitsubaScene& scene) {
     toml::table material = diffuse(bsdf, "diffuse_reflectance", scene);
     require_one(bsdf, "specular_reflectance");
-    toml::table layer{{"ior", relative_ior(bsdf, "polypropylene")}};
+    toml::table layer;
+    layer.insert(bsdf.key("ior", "int_ior"), relative_ior(bsdf, "polypropylene"));
     if (rough)
         insert_roughness(layer, bsdf);
     if (!bsdf.flag_or("nonlinear", false) && !has_linear_base(bsdf, material, layer))
@@ -164,8 +165,9 @@ toml::table nested_material(const MitsubaObject& bsdf, MitsubaScene& scene) {
 /// The coats of Mitsuba 0.6, with the names as Mitsuba 3 would spell them.
 toml::table coating(const MitsubaObject& bsdf, bool rough, MitsubaScene& scene) {
     toml::table material = nested_material(bsdf, scene);
-    toml::table layer{{"ior", relative_ior(bsdf, "bk7")},
-                      {"thickness", bsdf.number_or("thickness", 1.0)}};
+    toml::table layer;
+    layer.insert(bsdf.key("ior", "int_ior"), relative_ior(bsdf, "bk7"));
+    layer.insert(bsdf.key("thickness", "thickness"), bsdf.number_or("thickness", 1.0));
     if (bsdf.has("sigma_a"))
         insert_mitsuba_spectrum(layer, "absorption", bsdf, "sigma_a", scene);
     require_one(bsdf, "specular_reflectance");
@@ -210,7 +212,7 @@ std::string mitsuba_material(const pugi::xml_node& element, MitsubaScene& scene)
     toml::table material = material_of(element, scene);
     scene.material_textures[name] = scene.texture_met;
     material.insert("name", name);
-    scene.add("material", std::move(material));
+    scene.add("material", std::move(material), element);
     return name;
 }
 
@@ -218,9 +220,11 @@ std::string mitsuba_default_material(MitsubaScene& scene) {
     const auto [entry, is_new] = scene.material_names.emplace(-1, "default");
     if (is_new) {
         entry->second = scene.unique_name("default");
-        scene.add("material", toml::table{{"name", entry->second},
-                                          {"substrate", toml::table{{"type", "lambert"},
-                                                                    {"reflectance", 0.5}}}});
+        scene.add(
+            "material",
+            toml::table{{"name", entry->second},
+                        {"substrate", toml::table{{"type", "lambert"}, {"reflectance", 0.5}}}},
+            scene.document().scene());
     }
     return entry->second;
 }

@@ -1,5 +1,7 @@
 #include "host/scene/mitsuba_object.h"
 
+#include "host/scene/toml_document.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
@@ -35,6 +37,11 @@ pugi::xml_node MitsubaObject::property(const std::string& name, const char* tag)
         document_->fail(found, fmt::format("{} of the {} is a <{}>", name, title(), found.name()),
                         fmt::format("only <{}> is supported there", tag));
     return found;
+}
+
+toml::key MitsubaObject::key(const char* made, const std::string& property) const {
+    const pugi::xml_node found = find(property);
+    return placed_key(made, document_->position(found ? found : element_));
 }
 
 std::string MitsubaObject::text_or(const std::string& name, const std::string& otherwise) const {

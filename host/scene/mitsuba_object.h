@@ -3,6 +3,7 @@
 #include "host/scene/mitsuba_document.h"
 
 #include <Eigen/Core>
+#include <toml++/toml.h>
 
 #include <optional>
 #include <set>
@@ -31,6 +32,9 @@ public:
     /// A property by its name whatever its tag; empty when absent. Counts as asked for.
     pugi::xml_node find(const std::string& name) const;
     bool has(const std::string& name) const { return static_cast<bool>(find(name)); }
+
+    /// The key that something made of a property gets: placed there, or at the plugin without it.
+    toml::key key(const char* made, const std::string& property) const;
 
     std::string text_or(const std::string& name, const std::string& otherwise) const;
     bool flag_or(const std::string& name, bool otherwise) const;

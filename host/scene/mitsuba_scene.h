@@ -23,7 +23,9 @@ public:
     std::string file_name(const MitsubaObject& owner, const std::string& property) const;
     std::string file_name(const pugi::xml_node& element, const std::string& given) const;
 
-    void add(const char* list, toml::table entry);
+    /// Keys that have no place yet get that of `element` in both.
+    void add(const char* list, toml::table entry, const pugi::xml_node& element);
+    void set(const char* key, toml::table entry, const pugi::xml_node& element);
     /// A name like the given one that no other entry of the list has.
     std::string unique_name(const std::string& wanted);
     toml::table& table() { return table_; }

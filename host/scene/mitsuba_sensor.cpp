@@ -45,7 +45,8 @@ FilmSize read_film(const MitsubaObject& sensor, MitsubaScene& scene) {
             film.ignore(band.attribute("name").value(), "choose bands with --bands");
         film.finish();
     }
-    scene.table().insert("film", toml::table{{"width", size.width}, {"height", size.height}});
+    scene.set("film", toml::table{{"width", size.width}, {"height", size.height}},
+              films.empty() ? sensor.element() : films.front());
     return size;
 }
 
@@ -142,7 +143,7 @@ void add_mitsuba_sensor(const pugi::xml_node& element, MitsubaScene& scene) {
         sensor.ignore(name, "nothing is clipped");
     read_sampler(sensor, scene);
     sensor.finish();
-    scene.table().insert("camera", std::move(camera));
+    scene.set("camera", std::move(camera), element);
 }
 
 void add_mitsuba_integrator(const pugi::xml_node& element, MitsubaScene& scene) {
@@ -174,7 +175,7 @@ void add_mitsuba_integrator(const pugi::xml_node& element, MitsubaScene& scene) 
         integrator.document().fail(integrator.find("hide_emitters"),
                                    "hide_emitters is not supported", "leave it out");
     integrator.finish();
-    scene.table().insert_or_assign("integrator", std::move(settings));
+    scene.set("integrator", std::move(settings), element);
 }
 
 } // namespace reradiant

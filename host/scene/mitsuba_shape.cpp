@@ -43,9 +43,9 @@ toml::table sphere(const MitsubaObject& shape, const Matrix& matrix) {
     const Vector center = shape.point("center").value_or(Vector::Zero());
     const double radius = shape.number_or("radius", 1.0);
     const Vector moved = matrix.topLeftCorner<3, 3>() * center + column(matrix, 3);
-    return toml::table{{"type", "sphere"},
-                       {"center", toml_vector(moved)},
-                       {"radius", radius * uniform_scale(shape, matrix, 3)}};
+    toml::table made{{"type", "sphere"}, {"center", toml_vector(moved)}};
+    made.insert(shape.key("radius", "radius"), radius * uniform_scale(shape, matrix, 3));
+    return made;
 }
 
 /// -1..1 by -1..1, facing +z; where it faces the other way the edges of one that emits are swapped.
@@ -194,13 +194,13 @@ void add_area_light(const MitsubaObject& shape, const pugi::xml_node& element, t
                    "let a sphere, a rectangle or a mesh of one parallelogram emit");
     if (shape.type() == "sphere" && flipped)
         emitter.fail("a sphere that emits inwards is not supported", "let it emit outwards");
-    light.insert("radiance", mitsuba_emission(emitter, "radiance", scene));
+    light.insert(emitter.key("radiance", "radiance"), mitsuba_emission(emitter, "radiance", scene));
     emitter.finish();
     const auto bsdfs = shape.nested("bsdf");
     if (!bsdfs.empty())
         spdlog::warn("{}: the bsdf of a shape that emits is left out: lights reflect nothing",
                      scene.document().position(bsdfs.front()).text());
-    scene.add("light", std::move(light));
+    scene.add("light", std::move(light), shape.element());
 }
 
 } // namespace
@@ -221,7 +221,7 @@ void add_mitsuba_shape(const pugi::xml_node& element, MitsubaScene& scene) {
         for (toml::table& part : parts) {
             fit_texture(shape, scene.material_textures[material], part);
             part.insert("material", material);
-            scene.add("shape", std::move(part));
+            scene.add("shape", std::move(part), element);
         }
     } else {
         for (toml::table& part : parts)

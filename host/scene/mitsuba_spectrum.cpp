@@ -1,4 +1,5 @@
 #include "host/scene/mitsuba_scene.h"
+#include "host/scene/toml_document.h"
 #include "host/spectral/colour.h"
 #include "host/spectral/text_reader.h"
 
@@ -8,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 
 namespace reradiant {
 
@@ -134,6 +136,15 @@ std::vector<double> number_list(const MitsubaObject& spectrum, const std::string
     return spectrum.document().numbers(found, "value", 0);
 }
 
+[[noreturn]] void refuse_order(const MitsubaObject& spectrum, double before, double after) {
+    const bool is_listed = spectrum.type() == "irregular";
+    const pugi::xml_node at = spectrum.find(is_listed ? "wavelengths" : "wavelength_max");
+    spectrum.document().fail(at ? at : spectrum.element(),
+                             fmt::format("{} nm follows {} nm", after, before),
+                             is_listed ? "wavelengths must ascend, each once"
+                                       : "wavelength_max must be above wavelength_min");
+}
+
 Samples sampled(const MitsubaObject& spectrum) {
     std::vector<double> values = number_list(spectrum, "values");
     std::vector<double> nm;
@@ -151,6 +162,9 @@ Samples sampled(const MitsubaObject& spectrum) {
         spectrum.fail(
             fmt::format("{} wavelengths stand beside {} values", nm.size(), values.size()),
             "give one for each");
+    const auto back = std::adjacent_find(nm.begin(), nm.end(), std::greater_equal<>());
+    if (back != nm.end())
+        refuse_order(spectrum, back[0], back[1]);
     return {std::move(nm), std::move(values)};
 }
 
@@ -163,6 +177,16 @@ toml::table spectrum_file(const pugi::xml_node& element, const MitsubaScene& sce
     return samples_of({std::move(table.columns[0]), std::move(table.columns[1])}, beyond);
 }
 
+toml::table blackbody(const MitsubaObject& spectrum) {
+    const double kelvin = spectrum.number_or("temperature", 5000.0);
+    try {
+        const Spectrum shape = Spectrum::blackbody(kelvin, planck_per_nm(kelvin, 560.0));
+        return toml::table{{"blackbody_kelvin", kelvin}, {"scale", xyz_of(shape)[1]}};
+    } catch (const std::invalid_argument& error) {
+        spectrum.fail(error.what(), "give a temperature in kelvin that glows");
+    }
+}
+
 /// A <spectrum> of a type of its own.
 toml::table plugin(const pugi::xml_node& element, MitsubaScene& scene, Beyond beyond) {
     const MitsubaObject spectrum(scene.document(), element);
@@ -173,9 +197,7 @@ toml::table plugin(const pugi::xml_node& element, MitsubaScene& scene, Beyond be
     } else if (spectrum.type() == "d65") {
         made = d65(spectrum.number_or("scale", 1.0));
     } else if (spectrum.type() == "blackbody") {
-        const double kelvin = spectrum.number_or("temperature", 5000.0);
-        const Spectrum shape = Spectrum::blackbody(kelvin, planck_per_nm(kelvin, 560.0));
-        made = toml::table{{"blackbody_kelvin", kelvin}, {"scale", xyz_of(shape)[1]}};
+        made = blackbody(spectrum);
     } else if (spectrum.type() == "regular" || spectrum.type() == "irregular") {
         made = samples_of(sampled(spectrum), beyond);
     } else {
@@ -204,7 +226,7 @@ toml::table spectrum_of(const pugi::xml_node& element, MitsubaScene& scene, Beyo
 }
 
 /// Writes a table of one wavelength, a constant, as its number.
-void insert_plain(toml::table& into, const char* key, toml::table spectrum) {
+void insert_plain(toml::table& into, const toml::key& key, toml::table spectrum) {
     const toml::array* values = spectrum["value"].as_array();
     if (values != nullptr && values->size() == 1)
         into.insert(key, *(*values)[0].value<double>());
@@ -222,11 +244,12 @@ void insert_plain(toml::table& into, const char* key, toml::table spectrum) {
 void insert_values(toml::table& into, const char* key, const MitsubaObject& owner,
                    const std::string& name, MitsubaScene& scene, Beyond beyond) {
     const pugi::xml_node element = resolved(owner.find(name), scene);
+    const toml::key made = placed_key(key, scene.document().position(element));
     const std::string tag = element.name();
     if (tag == "float")
-        into.insert(key, scene.document().number(element, "value"));
+        into.insert(made, scene.document().number(element, "value"));
     else if (tag == "spectrum")
-        insert_plain(into, key, spectrum_of(element, scene, beyond));
+        insert_plain(into, made, spectrum_of(element, scene, beyond));
     else
         refuse_form(owner, name, element, "write a <spectrum> or a <float>");
 }
@@ -244,8 +267,11 @@ toml::table mitsuba_emission(const MitsubaObject& owner, const std::string& name
         return d65(scene.document().number(element, "value"));
     if (tag == "rgb")
         return rgb_emission(read_rgb(scene.document(), element, "value"));
-    if (tag == "spectrum")
-        return spectrum_of(element, scene, Beyond::Zero);
+    if (tag == "spectrum") {
+        toml::table spectrum = spectrum_of(element, scene, Beyond::Zero);
+        place_keys(spectrum, scene.document().position(element));
+        return spectrum;
+    }
     refuse_form(owner, name, element, "light has a <spectrum>, an <rgb> or a <float>");
 }
 
@@ -257,14 +283,15 @@ void insert_mitsuba_reflectance(toml::table& into, const char* key, const Mitsub
         return;
     }
     const pugi::xml_node element = resolved(found, scene);
+    const toml::key made = placed_key(key, scene.document().position(element));
     const std::string tag = element.name();
     if (tag == "texture") {
         if (std::string(owner.element().name()) == tag)
             refuse_form(owner, name, element, "a texture is made of colours, not of textures");
-        into.insert(key, mitsuba_texture(element, scene));
+        into.insert(made, mitsuba_texture(element, scene));
     } else if (tag == "rgb") {
         const Rgb rgb = read_rgb(scene.document(), element, "value");
-        into.insert(key, toml::table{{"rgb", toml::array{rgb[0], rgb[1], rgb[2]}}});
+        into.insert(made, toml::table{{"rgb", toml::array{rgb[0], rgb[1], rgb[2]}}});
     } else {
         insert_values(into, key, owner, name, scene, Beyond::Zero);
     }

@@ -64,7 +64,7 @@ toml::table mitsuba_texture(const pugi::xml_node& element, MitsubaScene& scene) 
     }
     texture.finish();
     scene.texture_met = made["type"].value_or(std::string());
-    scene.add("texture", std::move(made));
+    scene.add("texture", std::move(made), element);
     return toml::table{{"texture", name}};
 }
 

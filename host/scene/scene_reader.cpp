@@ -112,7 +112,7 @@ void read_lights(const TableReader& root, Scene& scene, LoadState& state) {
             images += sky->image >= 0 ? 1 : 0;
         }
         if (images > 0 && skies > 1)
-            throw_input_error(position_of(root.file(), lights[i]->source()),
+            throw_input_error(position_of(root.file(), *lights[i]),
                               "an environment image stands beside another environment",
                               "put both into one image");
     }

@@ -36,7 +36,7 @@ std::vector<std::string> keys_of_form(const std::string& form) {
 
 /// The form a table is in: the one key of FORMS that it holds.
 std::string form_of(const toml::table& table, const std::string& file, const std::string& name) {
-    const SourcePosition at = position_of(file, table.source());
+    const SourcePosition at = position_of(file, table);
     std::vector<std::string> found;
     for (const auto& form : FORMS)
         if (table.contains(form))
@@ -74,7 +74,7 @@ Spectrum read_table(const TableReader& reader) {
     const toml::array& nodes = *reader.required("nm").as_array();
     for (std::size_t i = 1; i < nm.size(); ++i)
         if (!(nm[i] > nm[i - 1]))
-            throw_input_error(position_of(reader.file(), nodes[i].source()),
+            throw_input_error(position_of(reader.file(), nodes[i], reader.position_of_key("nm")),
                               fmt::format("nm[{}] = {} does not follow {}", i, nm[i], nm[i - 1]),
                               "wavelengths must ascend, each once");
     return Spectrum::table(nm, value);
@@ -139,7 +139,7 @@ Spectrum read_textured(const toml::node& node, const std::string& file, const st
     const auto end = [&](const TextureReference::End& at, const char* key, double otherwise) {
         if (at.node == nullptr)
             return Spectrum::constant(otherwise);
-        return read_node(*at.node, at.file, position_of(at.file, at.node->source()), key, state);
+        return read_node(*at.node, at.file, position_of(at.file, *at.node), key, state);
     };
     state.texture_scope->inside_reference = true;
     const Spectrum low = end(reference.low, "low", 0.0), high = end(reference.high, "high", 1.0);
@@ -172,7 +172,7 @@ Spectrum read_node(const toml::node& node, const std::string& file, const Source
                           fmt::format("give 1 to {}", MAX_TERMS));
     Spectrum sum;
     for (std::size_t i = 0; i < terms->size(); ++i)
-        sum += read_node((*terms)[i], file, position_of(file, (*terms)[i].source()),
+        sum += read_node((*terms)[i], file, position_of(file, (*terms)[i], at),
                          fmt::format("{}[{}]", name, i), state);
     return sum;
 }

@@ -32,7 +32,7 @@ bool read_reflectance_image(const TableReader& reader, Substrate& substrate, Loa
         substrate.reflectance = read_spectrum_key(reference, "high", limits, state);
     else if (const toml::node* high = entry.table->get("high"))
         substrate.reflectance = read_spectrum_node(
-            *high, entry.file, position_of(entry.file, high->source()), "high", limits, state);
+            *high, entry.file, position_of(entry.file, *high), "high", limits, state);
     return true;
 }
 

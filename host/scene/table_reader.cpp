@@ -90,7 +90,7 @@ std::vector<double> numbers_at(const toml::node& node, const std::string& file,
     values.reserve(array->size());
     for (std::size_t i = 0; i < array->size(); ++i) {
         const toml::node& element = (*array)[i];
-        values.push_back(number_at(element, position_of(file, element.source()),
+        values.push_back(number_at(element, position_of(file, element, position),
                                    fmt::format("{}[{}]", name, i), range));
     }
     return values;
@@ -252,7 +252,7 @@ std::vector<const toml::table*> TableReader::tables(const std::string& key) cons
              fmt::format("write an array of tables: [[{}]]", key));
     for (const toml::node& element : *array) {
         if (!element.is_table())
-            throw_input_error(position_of(file_, element.source()),
+            throw_input_error(position_of(file_, element),
                               fmt::format("an element of {} is {}", key, toml_type_name(element)),
                               "write a table");
         found.push_back(element.as_table());
@@ -266,8 +266,7 @@ std::string type_of_table(const toml::table& table, const std::string& file,
         reference->add_types(types);
     const auto entry = table.find("type");
     if (entry == table.end())
-        throw_input_error(position_of(file, table.source()),
-                          fmt::format("{} has no \"type\"", name),
+        throw_input_error(position_of(file, table), fmt::format("{} has no \"type\"", name),
                           fmt::format("add type = one of: {}", fmt::join(types, ", ")));
     const SourcePosition at = position_of(file, entry->first.source());
     if (!entry->second.is_string())

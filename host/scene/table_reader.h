@@ -51,7 +51,7 @@ public:
     bool has(const std::string& key) const { return find(key) != nullptr; }
     const std::string& file() const { return file_; }
     const std::string& name() const { return name_; }
-    SourcePosition position() const { return position_of(file_, table_->source()); }
+    SourcePosition position() const { return position_of(file_, *table_); }
     /// Place of the key, or of the table when the key is absent.
     SourcePosition position_of_key(const std::string& key) const;
     [[noreturn]] void fail(const std::string& key, const std::string& what_is_wrong,

@@ -107,9 +107,8 @@ double read_number_key(const TableReader& table, const std::string& key, const N
         return table.number(key, range);
     const TextureReference reference = read_texture_reference(node, table.file(), key, state);
     const auto end = [&](const TextureReference::End& at, const char* name, double otherwise) {
-        return at.node == nullptr
-                   ? otherwise
-                   : number_at(*at.node, position_of(at.file, at.node->source()), name, {});
+        return at.node == nullptr ? otherwise
+                                  : number_at(*at.node, position_of(at.file, *at.node), name, {});
     };
     const double low = end(reference.low, "low", 0.0), high = end(reference.high, "high", 1.0);
     // Both ends are checked at every level, so that the first reading finds what is wrong.

@@ -53,6 +53,45 @@ SourcePosition position_of(const std::string& file, const toml::source_region& r
     return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
+SourcePosition position_of(const std::string& file, const toml::node& node,
+                           const SourcePosition& otherwise) {
+    if (node.source().begin.line > 0)
+        return position_of(file, node.source());
+    SourcePosition first = otherwise.line > 0 ? otherwise : SourcePosition{file};
+    const auto take = [&first](const SourcePosition& found) {
+        if (found.line > 0 && (first.line <= 0 || found.line < first.line ||
+                               (found.line == first.line && found.column < first.column)))
+            first = found;
+    };
+    if (const toml::table* table = node.as_table(); table != nullptr && otherwise.line <= 0)
+        for (const auto& [key, value] : *table)
+            take(key.source().begin.line > 0 ? position_of(file, key.source())
+                                             : position_of(file, value));
+    return first;
+}
+
+toml::key placed_key(const std::string& key, const SourcePosition& position) {
+    const toml::source_position at{static_cast<toml::source_index>(position.line),
+                                   static_cast<toml::source_index>(position.column)};
+    return toml::key(key, toml::source_region{at, at, {}});
+}
+
+void place_keys(toml::table& table, const SourcePosition& position) {
+    toml::table placed;
+    for (auto&& [key, node] : table) {
+        if (toml::table* inner = node.as_table())
+            place_keys(*inner, position);
+        else if (toml::array* array = node.as_array())
+            for (toml::node& element : *array)
+                if (toml::table* one = element.as_table())
+                    place_keys(*one, position);
+        const bool is_placed = key.source().begin.line > 0;
+        const toml::key made = is_placed ? key : placed_key(std::string(key.str()), position);
+        node.visit([&](auto& value) { placed.insert(made, std::move(value)); });
+    }
+    table = std::move(placed);
+}
+
 toml::table parse_toml(const std::string& file, std::string_view text) {
     refuse_deep_keys(file, text);
     try {

@@ -54,6 +54,39 @@ void interpolate(const WavelengthGrid& grid, double nm,
     }
 }
 
+/// A lamp's light around a wavelength, per nm. Tables in steps of 1 nm or more count with their
+/// value there, as the standards have it. What is finer counts with its mean over the nanometre.
+class LampAtNanometres {
+public:
+    explicit LampAtNanometres(const Spectrum& lamp)
+        : lamp_(lamp), smooth_(lamp.without_lines()), is_fine_(is_finer_than_1_nm(smooth_)) {}
+
+    double operator()(double nm) const {
+        if (is_fine_)
+            return lamp_.average(nm - 0.5, nm + 0.5);
+        double light = smooth_(nm);
+        for (const SpectralLine& line : lamp_.lines())
+            light += Spectrum::line(line.centre_nm, line.width_nm, line.integral)
+                         .average(nm - 0.5, nm + 0.5);
+        return light;
+    }
+
+private:
+    /// Nodes that lie closer than 1e-4 nm are the two sides of a step.
+    static bool is_finer_than_1_nm(const Spectrum& smooth) {
+        constexpr double step_nm = 1e-4, rounding_nm = 1e-3;
+        const std::vector<double> nodes = smooth.breakpoints_nm();
+        for (std::size_t k = 1; k < nodes.size(); ++k)
+            if (nodes[k] - nodes[k - 1] > step_nm && nodes[k] - nodes[k - 1] < 1.0 - rounding_nm)
+                return true;
+        return false;
+    }
+
+    const Spectrum& lamp_;
+    Spectrum smooth_;
+    bool is_fine_;
+};
+
 /// The parts that a colour is summed from.
 struct Exitance {
     Eigen::VectorXd reflectance, luminescent; ///< per emission band
@@ -61,9 +94,9 @@ struct Exitance {
 
 /// Mean irradiance of every excitation band, as it counts in the sum.
 Eigen::VectorXd irradiance_of(const WavelengthGrid& bands, const Spectrum& illuminant,
-                              ColourSum sum) {
+                              bool at_nanometres) {
     Eigen::VectorXd irradiance = Eigen::VectorXd::Zero(bands.count);
-    if (sum == ColourSum::Bands) {
+    if (!at_nanometres) {
         for (int i = 0; i < bands.count; ++i)
             irradiance[i] = illuminant(bands.centre_nm(i));
         return irradiance;
@@ -71,23 +104,24 @@ Eigen::VectorXd irradiance_of(const WavelengthGrid& bands, const Spectrum& illum
     const double from = bands.lower_edge_nm(0), width = bands.count * bands.step_nm;
     const int pieces = std::max(bands.count, static_cast<int>(std::lround(width)));
     const double piece_nm = width / pieces;
+    const LampAtNanometres lamp(illuminant);
     for (int piece = 0; piece < pieces; ++piece) {
         const double nm = from + (piece + 0.5) * piece_nm;
-        interpolate(bands, nm, [&](int band, double share) {
-            irradiance[band] += share * illuminant(nm) * piece_nm / bands.step_nm;
-        });
+        const double light = lamp(nm) * piece_nm / bands.step_nm;
+        interpolate(bands, nm, [&](int band, double share) { irradiance[band] += share * light; });
     }
     return irradiance;
 }
 
-Exitance exitance_of(const ReradiationMatrix& matrix, const Spectrum& illuminant, ColourSum sum) {
+Exitance exitance_of(const ReradiationMatrix& matrix, const Spectrum& illuminant,
+                     bool at_nanometres) {
     const Spectrum reflectance = matrix.reflectance();
     Exitance exitance;
     exitance.reflectance.resize(matrix.emission.count);
     for (int o = 0; o < matrix.emission.count; ++o)
         exitance.reflectance[o] = reflectance(matrix.emission.centre_nm(o));
     exitance.luminescent =
-        matrix.fluorescent_part() * irradiance_of(matrix.excitation, illuminant, sum);
+        matrix.fluorescent_part() * irradiance_of(matrix.excitation, illuminant, at_nanometres);
     return exitance;
 }
 
@@ -102,33 +136,60 @@ Sums sum_over_bands(const WavelengthGrid& bands, const Exitance& exitance,
     for (int o = 0; o < bands.count; ++o) {
         const double nm = bands.centre_nm(o), light = illuminant(nm);
         const Xyz eye = observer_at(nm);
-        add(sums.reflected, eye, exitance.reflectance[o] * light);
-        add(sums.luminescent, eye, exitance.luminescent[o]);
-        add(sums.white, eye, light);
+        add(sums.reflected, eye, bands.step_nm * exitance.reflectance[o] * light);
+        add(sums.luminescent, eye, bands.step_nm * exitance.luminescent[o]);
+        add(sums.white, eye, bands.step_nm * light);
     }
     return sums;
 }
 
+/// Over whole nanometres, those at the very ends by half.
 Sums sum_over_nanometres(const WavelengthGrid& bands, const Exitance& exitance,
-                         const Spectrum& illuminant) {
+                         const Spectrum& illuminant, double from_nm, double to_nm) {
+    const LampAtNanometres lamp(illuminant);
     Sums sums;
-    for (int nm = e308_from_nm; nm <= e308_to_nm; ++nm) {
-        const double light = illuminant(nm);
+    for (double nm = std::ceil(from_nm); nm <= to_nm; nm += 1.0) {
+        const double weight = nm == from_nm || nm == to_nm ? 0.5 : 1.0;
+        const double light = weight * lamp(nm);
         const Xyz eye = observer_at(nm);
         interpolate(bands, nm, [&](int o, double share) {
             add(sums.reflected, eye, share * exitance.reflectance[o] * light);
-            add(sums.luminescent, eye, share * exitance.luminescent[o]);
+            add(sums.luminescent, eye, weight * share * exitance.luminescent[o]);
         });
         add(sums.white, eye, light);
     }
     return sums;
 }
 
+/// The standard's ends count in full.
+constexpr double whole_end_nm = 0.25;
+
+Sums sum_as_e308(const WavelengthGrid& bands, const Exitance& exitance,
+                 const Spectrum& illuminant) {
+    return sum_over_nanometres(bands, exitance, illuminant, e308_from_nm - whole_end_nm,
+                               e308_to_nm + whole_end_nm);
+}
+
+Sums sum_within_bands(const WavelengthGrid& bands, const Exitance& exitance,
+                      const Spectrum& illuminant) {
+    return sum_over_nanometres(bands, exitance, illuminant, bands.lower_edge_nm(0),
+                               bands.upper_edge_nm(bands.count - 1));
+}
+
+/// The standard carries the last values on, which it allows from 400 and to 700 nm.
+bool reaches_far_enough(const WavelengthGrid& bands) {
+    return bands.from_nm < 400.5 && bands.to_nm() > 699.5;
+}
+
 /// Undefined (NaN) where the light has less than 1e-9 of its largest value: no instrument would see
 /// it, and the tail of a Gaussian lamp would give factors of 1e300.
-void fill_radiance_factors(MatrixColour& colour, const Exitance& exitance,
-                           const Spectrum& illuminant) {
-    const std::vector<double> lights = illuminant.at(colour.nm);
+void fill_radiance_factors(MatrixColour& colour, const WavelengthGrid& bands,
+                           const Exitance& exitance, const Spectrum& illuminant) {
+    std::vector<double> lights = illuminant.at(colour.nm);
+    if (colour.at_nanometres)
+        for (int o = 0; o < bands.count; ++o)
+            lights[static_cast<std::size_t>(o)] =
+                illuminant.average(bands.lower_edge_nm(o), bands.upper_edge_nm(o));
     const double dark =
         lights.empty() ? 0.0 : 1e-9 * *std::max_element(lights.begin(), lights.end());
     for (std::size_t o = 0; o < colour.nm.size(); ++o) {
@@ -140,14 +201,7 @@ void fill_radiance_factors(MatrixColour& colour, const Exitance& exitance,
     }
 }
 
-} // namespace
-
-MatrixColour colour_of_matrix(const ReradiationMatrix& matrix, const Spectrum& illuminant,
-                              ColourSum sum) {
-    const Exitance exitance = exitance_of(matrix, illuminant, sum);
-    const Sums sums = sum == ColourSum::Bands
-                          ? sum_over_bands(matrix.emission, exitance, illuminant)
-                          : sum_over_nanometres(matrix.emission, exitance, illuminant);
+MatrixColour colour_from(const Sums& sums) {
     if (!(sums.white[1] > 0.0))
         throw std::invalid_argument("the emission bands see none of the visible light");
     const double scale = 100.0 / sums.white[1];
@@ -160,8 +214,53 @@ MatrixColour colour_of_matrix(const ReradiationMatrix& matrix, const Spectrum& i
     colour.xy = total > 0.0 ? std::array{colour.xyz[0] / total, colour.xyz[1] / total}
                             : std::array{nan_value, nan_value};
     colour.lab = xyz_to_lab(colour.xyz, colour.white);
-    colour.nm = matrix.emission.centres_nm();
-    fill_radiance_factors(colour, exitance, illuminant);
+    return colour;
+}
+
+} // namespace
+
+LampError plain_sums_misjudge(const ReradiationMatrix& matrix, const Spectrum& illuminant) {
+    const WavelengthGrid& bands = matrix.emission;
+    const Exitance plain = exitance_of(matrix, illuminant, false);
+    const Exitance fine = exitance_of(matrix, illuminant, true);
+    const Sums at_bands = sum_over_bands(bands, plain, illuminant);
+    const Sums at_nanometres = sum_within_bands(bands, fine, illuminant);
+    LampError error;
+    const auto take = [&error](double off, double whole, const std::string& of) {
+        if (whole > 0.0 && std::abs(off) / whole > error.share)
+            error = {std::abs(off) / whole, of};
+    };
+    constexpr std::array names = {"white (X)", "white (Y)", "white (Z)"};
+    for (std::size_t c = 0; c < 3; ++c)
+        take(at_bands.white[c] - at_nanometres.white[c], at_nanometres.white[c], names[c]);
+    take(at_bands.luminescent[1] - at_nanometres.luminescent[1],
+         at_nanometres.reflected[1] + at_nanometres.luminescent[1], "fluorescence");
+    return error;
+}
+
+MatrixColour colour_of_matrix(const ReradiationMatrix& matrix, const Spectrum& illuminant,
+                              ColourSum sum) {
+    const LampError error =
+        sum == ColourSum::Automatic ? plain_sums_misjudge(matrix, illuminant) : LampError{};
+    const bool chosen = error.share > most_misjudged;
+    const bool at_nanometres = sum == ColourSum::E308 || chosen;
+    const WavelengthGrid& bands = matrix.emission;
+    const Exitance exitance = exitance_of(matrix, illuminant, at_nanometres);
+    Sums sums;
+    if (!at_nanometres)
+        sums = sum_over_bands(bands, exitance, illuminant);
+    else if (sum == ColourSum::E308 || reaches_far_enough(bands))
+        sums = sum_as_e308(bands, exitance, illuminant);
+    else
+        sums = sum_within_bands(bands, exitance, illuminant);
+    MatrixColour colour = colour_from(sums);
+    colour.nm = bands.centres_nm();
+    colour.at_nanometres = at_nanometres;
+    if (chosen)
+        colour.reason = fmt::format("summed over 1 nm: plain sums at the bands would misjudge the "
+                                    "lamp's own {} by {:.3g} %",
+                                    error.of, 100.0 * error.share);
+    fill_radiance_factors(colour, bands, exitance, illuminant);
     return colour;
 }
 

@@ -19,7 +19,22 @@ enum class ColourSum {
     /// the ends, the last value beyond). The narrow lines of a lamp count in full, also as
     /// excitation.
     E308,
+    /// Plain sums, unless they misjudge the lamp: then as E308, but over the bands' own range where
+    /// that ends within 400 to 700 nm. See plain_sums_misjudge.
+    Automatic,
 };
+
+/// How far plain sums at band centres are off for a lamp, of sums over 1 nm in the same bands: the
+/// largest of X, Y and Z of the lamp's own white, each relative to itself, and of the luminance
+/// that its light excites, relative to the colour's. A lamp with lines that band centres hit or
+/// miss is off by per cents, a smooth one on bands of 10 nm by less than 0.11 %.
+struct LampError {
+    double share = 0.0;
+    std::string of; ///< "white (Z)" or "fluorescence"
+};
+LampError plain_sums_misjudge(const ReradiationMatrix& matrix, const Spectrum& illuminant);
+/// Beyond this Automatic sums over 1 nm.
+inline constexpr double most_misjudged = 0.002;
 
 /// The colour of a matrix under one illuminant, CIE 1931 2 degree observer.
 struct MatrixColour {
@@ -33,6 +48,10 @@ struct MatrixColour {
     /// beta_L, the luminescent radiance factor; NaN where the illuminant is dark.
     std::vector<double> luminescent;
     std::vector<double> total; ///< beta_T = beta_R + beta_L; above 1 is legal
+    /// That the sums are over 1 nm. Radiance factors are then those of the bands' mean light.
+    bool at_nanometres = false;
+    /// Why, where Automatic chose that: a sentence without the lamp's name.
+    std::string reason;
 };
 
 /// Raw values: negative and anti-Stokes entries count as they are. Where an emission band has no

@@ -33,6 +33,7 @@ nlohmann::ordered_json colour_report_json(const ColourReport& report) {
         {"xy", colour.xy},
         {"Lab", colour.lab},
         {"white_XYZ", colour.white},
+        {"sums", colour.at_nanometres ? "1 nm" : "bands"},
         {"luminance_factor",
          {{"total", colour.xyz[1] / 100.0},
           {"reflected", colour.luminance_reflected / 100.0},
@@ -54,6 +55,8 @@ nlohmann::ordered_json colour_report_json(const ColourReport& report) {
                  {"beta_R", colour.reflected},
                  {"beta_L", colour.luminescent},
                  {"warnings", report.warnings}});
+    if (!colour.reason.empty())
+        json["sums_reason"] = colour.reason;
     return json;
 }
 

@@ -193,6 +193,11 @@ class BadInput(unittest.TestCase):
         for name in ("/none/image.exr", pathlib.Path("/none/image.exr")):
             with self.assertRaises(rr.Error):
                 image.write(name)
+        flat = rr.Reradiation(np.eye(41) * 0.5, NM, NM)
+        for write in (image.write, image.write_png, flat.write):
+            self.refused(["nowhere/out.exr", "the folder nowhere does not exist"], write,
+                         "nowhere/out.exr")
+            self.refused(["/tmp", "is a folder"], write, "/tmp")
         self.refused(["file", "empty"], image.write, "")
         self.refused(["file", "zero character"], image.write, "a\0b.exr")
 

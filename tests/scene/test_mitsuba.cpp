@@ -251,6 +251,63 @@ TEST_F(Mitsuba, WhatIsNotSupportedIsNamedWithItsPlace) {
     expect("<shape type=\"sphere\">", "not valid XML", 7, 3);
 }
 
+TEST_F(Mitsuba, WhatTheSceneReaderRefusesIsPlacedInTheXml) {
+    const auto expect = [&](const std::string& body, const std::string& text, int line,
+                            int column) {
+        const Caught caught = refusal(body);
+        ASSERT_TRUE(caught.thrown) << body;
+        EXPECT_EQ(caught.exit_code, 2);
+        EXPECT_NE(caught.text.find(text), std::string::npos) << caught.text;
+        EXPECT_NE(caught.file.find("scene.xml"), std::string::npos) << caught.text;
+        EXPECT_EQ(caught.line, line) << caught.text;
+        EXPECT_EQ(caught.column, column) << caught.text;
+    };
+    const auto expect_lamp = [&](const std::string& spectrum, const std::string& text, int column) {
+        expect("<emitter type=\"constant\">\n<spectrum name=\"radiance\" " + spectrum +
+                   "</emitter>",
+               text, 7, column);
+    };
+    expect_lamp("type=\"irregular\"><string name=\"wavelengths\" value=\"400, 600, 500, 700\"/>"
+                "<string name=\"values\" value=\"1, 2, 3, 4\"/></spectrum>",
+                "500 nm follows 600 nm", 44);
+    expect_lamp("type=\"irregular\"><string name=\"wavelengths\" value=\"400, 400\"/>"
+                "<string name=\"values\" value=\"1, 2\"/></spectrum>",
+                "400 nm follows 400 nm", 44);
+    expect_lamp("type=\"regular\"><float name=\"wavelength_min\" value=\"700\"/><float "
+                "name=\"wavelength_max\" value=\"400\"/><string name=\"values\" value=\"1, 2\"/>"
+                "</spectrum>",
+                "follows 700 nm", 84);
+    expect_lamp("value=\"0.001:1, 0.002:1\"/>", "nm[0]", 1);
+    expect_lamp("value=\"400:-1, 500:1\"/>", "down to -1", 1);
+    expect_lamp("type=\"blackbody\"><float name=\"temperature\" value=\"1\"/></spectrum>",
+                "blackbody of 1 K", 1);
+    const auto expect_bsdf = [&](const std::string& type, const std::string& property,
+                                 const std::string& text) {
+        expect("<shape type=\"sphere\"><bsdf type=\"" + type + "\">\n" + property +
+                   "</bsdf></shape>",
+               text, 7, 1);
+    };
+    expect_bsdf("diffuse", "<spectrum name=\"reflectance\" value=\"1.5\"/>", "1.5");
+    expect_bsdf("diffuse", "<spectrum name=\"reflectance\" value=\"400:0.5, 500:1.5\"/>", "1.5");
+    expect_bsdf("roughconductor", "<float name=\"alpha\" value=\"-1\"/>", "alpha is -1");
+    expect("<shape type=\"sphere\">\n<float name=\"radius\" value=\"-2\"/></shape>", "radius", 7,
+           1);
+    expect("<integrator type=\"path\"><integer name=\"max_depth\" value=\"20000\"/></integrator>",
+           "max_depth", 6, 1);
+    // An rgb whose reflectance is mapped while it is imported.
+    EXPECT_EQ(refusal("<shape type=\"sphere\">\n<bsdf type=\"plastic\"><rgb "
+                      "name=\"diffuse_reflectance\" value=\"2, 1, 1\"/></bsdf></shape>")
+                  .line,
+              7);
+    // No element says it: at the element that ought to.
+    const Caught film = error_of([&] {
+        load_scene(
+            write("scene.xml",
+                  testing::replaced(mitsuba_head, "value=\"8\"", "value=\"0\"") + "</scene>"));
+    });
+    EXPECT_EQ(film.line, 4) << film.text;
+}
+
 TEST_F(Mitsuba, WhatChangesLittleIsLeftOutWithAWarning) {
     const auto warned = warnings_of([&] {
         load(R"(<shape type="rectangle"><bsdf type="diffuse"/><emitter type="area"/></shape>

@@ -130,6 +130,90 @@ TEST(ColourOfMatrix, E308CountsAMercuryLineThatNoBandCentreHits) {
     EXPECT_GT(lines, 10.0 * smooth);
 }
 
+// The sigmoid 0.05 + 0.85 / (1 + exp(-(l - 590) / 12)) on bands of 10 nm from 380 nm. Sums over 1
+// nm of its values interpolated linearly, with the CIE's FL11 and observer, have Y = 29.4327, plain
+// sums 31.5634; a cubic between the bands is nearer to the sigmoid than a line, by 0.02.
+TEST(ColourOfMatrix, LampsWithLinesAreSummedOverNanometres) {
+    ReradiationMatrix paint;
+    paint.emission = paint.excitation = {380.0, 10.0, 41};
+    paint.values.setZero(41, 41);
+    for (int band = 0; band < 41; ++band)
+        paint.values(band, band) =
+            0.05 + 0.85 / (1.0 + std::exp(-(paint.emission.centre_nm(band) - 590.0) / 12.0));
+    EXPECT_NEAR(colour_under(paint, "FL11").xyz[1], 31.5634, 1e-3);
+    const MatrixColour lines = colour_under(paint, "FL11", ColourSum::Automatic);
+    EXPECT_TRUE(lines.at_nanometres);
+    EXPECT_NE(lines.reason.find("white (Z)"), std::string::npos) << lines.reason;
+    EXPECT_NEAR(lines.xyz[1], 29.42, 0.02);
+    expect_near(lines.xyz, colour_under(paint, "FL11", ColourSum::E308).xyz, 1e-12, "FL11");
+    for (const char* smooth : {"A", "C", "D50", "D65", "LED-B3", "E"}) {
+        const MatrixColour colour = colour_under(paint, smooth, ColourSum::Automatic);
+        EXPECT_FALSE(colour.at_nanometres) << smooth << ": " << colour.reason;
+        EXPECT_TRUE(colour.reason.empty());
+        expect_near(colour.xyz, colour_under(paint, smooth).xyz, 0.0, smooth);
+    }
+    for (const char* spiky : {"FL2", "FL7", "FL12", "HP1", "LED-V1"})
+        EXPECT_TRUE(colour_under(paint, spiky, ColourSum::Automatic).at_nanometres) << spiky;
+}
+
+TEST(ColourOfMatrix, BandsThatMissALineMissNoneOfIt) {
+    // The reflectance is a parabola, so that a line's share is known wherever it lies. 546.07 nm is
+    // mercury's; a tenth of a nanometre wide, a sum over whole nanometres could miss it, too.
+    const auto parabola = [](double nm) { return 0.3 + 1e-5 * (nm - 500.0) * (nm - 520.0); };
+    const ReradiationMatrix paint = reflecting(parabola);
+    for (const double centre : {436.5, 546.07, 578.2})
+        for (const double width : {0.1, 1.0, 3.0}) {
+            const MatrixColour colour =
+                colour_of_matrix(paint, Spectrum::line(centre, width, 1.0), ColourSum::Automatic);
+            EXPECT_TRUE(colour.at_nanometres);
+            EXPECT_NEAR(colour.xyz[1], 100.0 * parabola(centre), 0.15) << centre << " " << width;
+        }
+    // The same line in a table of finer steps than 1 nm.
+    const Spectrum table =
+        Spectrum::table({400.0, 546.0, 546.1, 546.2, 700.0}, {0.0, 0.0, 1.0, 0.0, 0.0});
+    EXPECT_NEAR(colour_of_matrix(paint, table, ColourSum::Automatic).xyz[1],
+                100.0 * parabola(546.1), 0.15);
+}
+
+TEST(ColourOfMatrix, AnInvisibleLineThatExcitesCounts) {
+    // Mercury's 365 nm lies between the centres of 10 nm bands, and the eye sees none of it.
+    Spectrum lamp = illuminant("D65");
+    lamp += Spectrum::line(365.0, 1.0, 4000.0);
+    const MatrixColour colour =
+        colour_of_matrix(shipped("synthetic-orange.csv"), lamp, ColourSum::Automatic);
+    EXPECT_TRUE(colour.at_nanometres);
+    EXPECT_NE(colour.reason.find("fluorescence"), std::string::npos) << colour.reason;
+    EXPECT_GT(colour.xyz[1], 1.01 * colour_under(shipped("synthetic-orange.csv"), "D65").xyz[1]);
+}
+
+TEST(ColourOfMatrix, FewBandsAreSummedWithinTheirOwnRange) {
+    // White stays white on any range, and a grey stays grey.
+    ReradiationMatrix grey;
+    grey.emission = grey.excitation = {520.0, 10.0, 8};
+    grey.values = 0.4 * Eigen::MatrixXd::Identity(8, 8);
+    const MatrixColour colour = colour_under(grey, "FL11", ColourSum::Automatic);
+    EXPECT_TRUE(colour.at_nanometres);
+    EXPECT_NEAR(colour.xyz[1], 40.0, 1e-9);
+    EXPECT_LT(colour.white[2], 2.0) << "as of the bands, which see no blue";
+}
+
+TEST(ColourOfMatrix, RadianceFactorsOfALampWithLinesAreThoseOfItsMeanLight) {
+    // A line in the band of 550 nm, off its centre: a factor against the light at the centre alone
+    // would be infinite there.
+    Spectrum lamp = Spectrum::constant(1.0);
+    lamp += Spectrum::line(546.0, 1.0, 100.0);
+    const ReradiationMatrix orange = shipped("synthetic-orange.csv");
+    const MatrixColour plain = colour_of_matrix(orange, lamp, ColourSum::Bands);
+    const MatrixColour mean = colour_of_matrix(orange, lamp, ColourSum::Automatic);
+    ASSERT_TRUE(mean.at_nanometres);
+    const std::size_t band = 25; // 550 nm, from 300
+    ASSERT_DOUBLE_EQ(mean.nm[band], 550.0);
+    // 11 times the light, and fluorescence from shorter wavelengths as before, but for the part of
+    // the line that counts as excitation at 540 nm.
+    EXPECT_GE(mean.luminescent[band], plain.luminescent[band] / 11.0);
+    EXPECT_LT(mean.luminescent[band], 1.3 * plain.luminescent[band] / 11.0);
+}
+
 TEST(ColourOfMatrix, RadianceFactorsAddUp) {
     const MatrixColour colour = colour_under(shipped("synthetic-orange.csv"), "D65");
     ASSERT_EQ(colour.nm.size(), 49u);

@@ -41,6 +41,52 @@ TEST_F(MitsubaCommands, RefusalsNameThePlaceAndLeaveNothing) {
     expect_failure(2, "convert scene.xml scene.csv", "scene.csv: a scene is written as .toml");
 }
 
+TEST_F(MitsubaCommands, WhateverIsConvertedLoads) {
+    namespace fs = std::filesystem;
+    const fs::path root = RERADIANT_SOURCE_DIR;
+    int scenes = 0;
+    for (const auto& entry : fs::directory_iterator(root / "tools/examples/mitsuba"))
+        if (entry.path().extension() == ".xml") {
+            const std::string name = entry.path().stem().string() + ".toml";
+            ASSERT_EQ(run("convert '" + entry.path().string() + "' " + name).exit_code, 0) << name;
+            EXPECT_EQ(run("validate " + name + " --quiet").errors, "") << name;
+            ++scenes;
+        }
+    EXPECT_GE(scenes, 8);
+    for (const auto& entry : fs::directory_iterator(root / "spectra/reradiation"))
+        for (const char* ending : {".csv", ".exr", ".bfc"}) {
+            if (entry.path().extension() != ".csv")
+                continue;
+            const std::string name = std::string("matrix") + ending;
+            const ProgramResult made = run("convert '" + entry.path().string() + "' " + name);
+            ASSERT_EQ(made.exit_code, 0) << made.errors;
+            EXPECT_EQ(run("info " + name).exit_code, 0) << name;
+        }
+    put("wide.csv", "nm,value\n380,0.5\n500.25,1e-300\n780,0.75\n");
+    ASSERT_EQ(run("convert wide.csv wide.spd --json done.json").exit_code, 0);
+    EXPECT_EQ(run("validate wide.spd --quiet").exit_code, 0);
+    EXPECT_NE(file_bytes(folder / "done.json").find("spectrum"), std::string::npos);
+}
+
+TEST_F(MitsubaCommands, WhatWouldNotLoadIsPlacedInTheXml) {
+    const std::string before = "<rgb name=\"reflectance\" value=\"0.6, 0.3, 0.1\"/>";
+    put("triangle.obj", "v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    put("scene.xml",
+        replaced(mitsuba_scene, before,
+                 "<spectrum name=\"reflectance\" type=\"irregular\"><string "
+                 "name=\"wavelengths\" value=\"400, 600, 500\"/><string name=\"values\" "
+                 "value=\"0.1, 0.2, 0.3\"/></spectrum>"));
+    expect_failure(2, "convert scene.xml scene.toml", "scene.xml:9:68: 500 nm follows 600 nm");
+    put("scene.xml", replaced(mitsuba_scene, before,
+                              "<spectrum name=\"reflectance\" value=\"400:0.5, 700:1.5\"/>"));
+    expect_failure(2, "convert scene.xml scene.toml", "scene.xml:9:22: reflectance");
+    put("scene.xml", replaced(mitsuba_scene, "value=\"8\"", "value=\"0\""));
+    expect_failure(2, "convert scene.xml scene.toml", "scene.xml:4:1: width is 0");
+    put("scene.xml", mitsuba_scene);
+    put("triangle.obj", "v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n");
+    expect_failure(2, "convert scene.xml scene.toml", "triangle.obj:4:");
+}
+
 TEST_F(Reference, HoldsEveryTableOfTheLoader) {
     const ProgramResult result = run("validate --reference");
     EXPECT_EQ(result.exit_code, 0) << result.errors; // fails for keys and types that were not met

@@ -3,6 +3,7 @@
 #include "host/fit/fit_summary.h"
 #include "host/fit/synth.h"
 #include "host/fit/synth_recipe.h"
+#include "host/output_file.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
 #include "tools/python/values.h"
@@ -105,6 +106,7 @@ void bind_data(py::module_& module) {
         .def_readonly("anti_stokes_allowed", &BispectralData::anti_stokes_allowed)
         .def("blocks", &blocks_of)
         .def("write", [](const BispectralData& d, const std::string& file) {
+            check_output_file(file);
             write_bispectral_data(file, d);
         });
 }
@@ -124,6 +126,7 @@ void bind_fit(py::module_& module) {
         .def_property_readonly("failure", [](const Fit& fit) { return fit.result.failure; })
         .def("summary", [](const Fit& fit) { return python_value(fit_summary(fit.result)); })
         .def("write_report", [](const Fit& fit, const std::string& file) {
+            check_output_file(file);
             write_fit_report(file, fit.data, fit.result);
         });
     module.def("fit", &fit_data);

@@ -1,4 +1,5 @@
 #include "host/film/spectral_image.h"
+#include "host/output_file.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
 #include "tools/python/values.h"
@@ -53,6 +54,7 @@ std::size_t write_png_file(const SpectralImage& image, const std::string& file,
                            const std::string& ocio, const std::string& display,
                            const std::string& view_name, double exposure) {
     const DisplayOptions options = display_options(ocio, display, view_name, exposure);
+    check_output_file(file);
     return interruptible([&](StopFlag) { return write_display_png(file, image, options); });
 }
 
@@ -93,6 +95,7 @@ void bind_images(py::module_& module) {
         .def_readwrite("attributes", &SpectralImage::attributes)
         .def("write",
              [](const SpectralImage& image, const std::string& file, double exposure) {
+                 check_output_file(file);
                  run_interruptible([&](StopFlag) { write_spectral_exr(file, image, exposure); });
              })
         .def("write_png", &write_png_file)

@@ -1,3 +1,4 @@
+#include "host/output_file.h"
 #include "host/report/svg.h"
 #include "host/spectral/colour_report.h"
 #include "host/spectral/matrix_io.h"
@@ -9,6 +10,7 @@
 #include <pybind11/stl.h>
 
 #include <memory>
+#include <optional>
 
 namespace py = pybind11;
 
@@ -71,8 +73,10 @@ std::string plot(const ReradiationMatrix& matrix, const std::string& title) {
 }
 
 py::object colour(const ReradiationMatrix& matrix, const std::string& name, const Spectrum& light,
-                  bool e308, const ReradiationMatrix* against) {
-    const ColourSum sum = e308 ? ColourSum::E308 : ColourSum::Bands;
+                  std::optional<bool> e308, const ReradiationMatrix* against) {
+    ColourSum sum = ColourSum::Automatic;
+    if (e308)
+        sum = *e308 ? ColourSum::E308 : ColourSum::Bands;
     ColourReport report = colour_report(matrix, name, light, sum);
     if (against != nullptr)
         report.ciede2000 = ciede2000(report.colour.lab, colour_of_matrix(*against, light, sum).lab);
@@ -89,8 +93,11 @@ void bind_matrices(py::module_& module) {
                     [](const std::string& file) {
                         return std::make_shared<ReradiationMatrix>(read_reradiation(file));
                     })
-        .def("write", [](const ReradiationMatrix& matrix,
-                         const std::string& file) { write_reradiation(file, matrix); })
+        .def("write",
+             [](const ReradiationMatrix& matrix, const std::string& file) {
+                 check_output_file(file);
+                 write_reradiation(file, matrix);
+             })
         .def_property_readonly(
             "values", [](ReradiationMatrix& matrix) -> Eigen::MatrixXd& { return matrix.values; },
             py::return_value_policy::reference_internal)

@@ -1,4 +1,5 @@
 #include "host/measure/measure.h"
+#include "host/output_file.h"
 #include "host/scene/scene_table.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
@@ -94,8 +95,10 @@ void bind_measure(py::module_& module) {
                                  py::arg("stderr") = column(m, &MeasureRow::standard_error),
                                  py::arg("specular") = specular_column(m));
              })
-        .def("write",
-             [](const Measurement& m, const std::string& file) { write_measurement(file, m); });
+        .def("write", [](const Measurement& m, const std::string& file) {
+            check_output_file(file);
+            write_measurement(file, m);
+        });
     module.def("measure", &measure_argument);
 }
 

@@ -247,7 +247,7 @@ def _stack(stack: Any) -> Any:
 
 
 def colour(matrix: Any, illuminant: Union[str, Sequence[str], Mapping[str, Spectrum]] = "D65", *,
-           e308: bool = False, against: Any = None) -> Dict[str, Dict[str, Any]]:
+           e308: Optional[bool] = None, against: Any = None) -> Dict[str, Dict[str, Any]]:
     """The colour of a matrix: XYZ (perfect diffuser Y = 100), xy, Lab, whiteness, radiance factors
     and, with `against`, CIEDE2000 to another matrix.
 
@@ -257,7 +257,8 @@ def colour(matrix: Any, illuminant: Union[str, Sequence[str], Mapping[str, Spect
     illuminant : str, list of str, or dict of name and Spectrum
         CIE names (an unknown one lists them all), or light of your own.
     e308 : bool
-        Sums over 1 nm (ASTM E308, E2022) instead of plain sums over the bands (ASTM E2152).
+        Sums over 1 nm (ASTM E308, E2022), or plain sums over the bands (ASTM E2152). By default the
+        latter, unless they misjudge the lamp itself by over 0.2 %; "sums" tells.
 
     Returns
     -------
@@ -274,8 +275,8 @@ def colour(matrix: Any, illuminant: Union[str, Sequence[str], Mapping[str, Spect
     """
     given = _matrix("matrix", matrix)
     other = None if against is None else _matrix("against", against)._matrix
-    by_bands = not _checks.flag("e308", e308)
-    return {name: given._matrix.colour(name, light._spectrum, not by_bands, other)
+    nanometres = None if e308 is None else _checks.flag("e308", e308)
+    return {name: given._matrix.colour(name, light._spectrum, nanometres, other)
             for name, light in _lights(illuminant).items()}
 
 

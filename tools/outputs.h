@@ -1,0 +1,36 @@
+#pragma once
+
+#include "tools/command.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+/// A file that a command line names to be written.
+struct NamedOutput {
+    std::string option;         ///< "--png", for messages
+    std::filesystem::path file; ///< empty: not asked for
+    /// Endings of what is written, with the dot, the first one usual. Another ending that is known
+    /// is refused: an EXR called .png is none.
+    std::vector<std::string> endings = {};
+    bool ending_chooses = false; ///< which of them is written: one must be there
+};
+
+/// Refuses, before work goes into it, whatever a command is told to write and could not: see
+/// check_output_file; a wrong ending; one file for two outputs; and an output that is one of the
+/// files `read`, which it would destroy. --json is one of the outputs. What lies in `folder`, which
+/// the command makes itself, need not have that yet.
+void check_outputs(const CommonOptions& common, std::vector<NamedOutput> outputs,
+                   const std::vector<std::filesystem::path>& read = {},
+                   const std::filesystem::path& folder = {});
+
+/// A folder to write results into, as it was given but without a slash at its end; refused as
+/// check_output_folder does.
+std::filesystem::path output_directory(const std::filesystem::path& given);
+
+/// FILE.checkpoint beside an output; nothing where that is a device or a pipe.
+std::filesystem::path checkpoint_beside(const std::filesystem::path& output);
+
+} // namespace reradiant
