@@ -22,6 +22,11 @@ void check_alike(const SpectralImage& image, const SpectralImage& reference) {
                           fmt::format("sizes differ: {} x {} against {} x {} pixels", image.width,
                                       image.height, reference.width, reference.height),
                           "compare images of one film size");
+    if (image.left != reference.left || image.top != reference.top)
+        throw_input_error({},
+                          fmt::format("display windows differ: from ({}, {}) against ({}, {})",
+                                      image.left, image.top, reference.left, reference.top),
+                          "compare images of the same place");
     const WavelengthGrid &a = image.bands, &b = reference.bands;
     if (a.count != b.count || std::abs(a.from_nm - b.from_nm) > 1e-5 ||
         std::abs(a.step_nm - b.step_nm) > 1e-5)

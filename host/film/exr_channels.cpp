@@ -1,7 +1,7 @@
 #include "host/film/exr_channels.h"
 
 #include "host/error.h"
-#include "host/film/exr_input.h"
+#include "host/exr_input.h"
 
 #include <ImfChannelList.h>
 #include <ImfHeader.h>
@@ -12,9 +12,11 @@ namespace reradiant {
 std::vector<std::string> exr_channel_names(const std::filesystem::path& file) {
     return with_exr_input(file, [](Imf::MultiPartInputFile& input) {
         std::vector<std::string> names;
-        const Imf::ChannelList& channels = input.header(0).channels();
-        for (auto channel = channels.begin(); channel != channels.end(); ++channel)
-            names.emplace_back(channel.name());
+        for (int part = 0; part < input.parts(); ++part) {
+            const Imf::ChannelList& channels = input.header(part).channels();
+            for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+                names.emplace_back(channel.name());
+        }
         return names;
     });
 }

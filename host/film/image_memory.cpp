@@ -1,6 +1,7 @@
 #include "host/film/image_memory.h"
 
-#include "host/film/exr_input.h"
+#include "host/exr_input.h"
+#include "host/exr_window.h"
 #include "host/film/spectral_channels.h"
 #include "host/memory_limit.h"
 
@@ -19,14 +20,13 @@ struct ImageSize {
 
 ImageSize size_of(const fs::path& file) {
     return with_exr_input(file, [](Imf::MultiPartInputFile& input) {
-        const Imath::Box2i window = input.header(0).dataWindow();
-        ImageSize size{(window.max.x - window.min.x + 1.0) * (window.max.y - window.min.y + 1.0),
+        const ExrWindow window(input.header(0));
+        ImageSize size{static_cast<double>(window.width()) * static_cast<double>(window.height()),
                        0.0};
         for (int part = 0; part < input.parts(); ++part) {
             const Imf::ChannelList& channels = input.header(part).channels();
             for (auto channel = channels.begin(); channel != channels.end(); ++channel)
-                size.values +=
-                    part > 0 || wavelength_of_channel(channel.name()) ? size.pixels : 0.0;
+                size.values += part > 0 || band_of_channel(channel.name()) ? size.pixels : 0.0;
         }
         return size;
     });

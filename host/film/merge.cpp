@@ -113,9 +113,9 @@ std::vector<SampleRange> gaps_between(const std::vector<PartHead>& heads,
 }
 
 void check_alike(const fs::path& file, const SpectralImage& part, const SpectralImage& first) {
-    if (part.width != first.width || part.height != first.height ||
-        part.bands.count != first.bands.count || part.bands.from_nm != first.bands.from_nm ||
-        part.bands.step_nm != first.bands.step_nm ||
+    if (part.width != first.width || part.height != first.height || part.left != first.left ||
+        part.top != first.top || part.bands.count != first.bands.count ||
+        part.bands.from_nm != first.bands.from_nm || part.bands.step_nm != first.bands.step_nm ||
         part.variance_bands.size() != first.variance_bands.size())
         refuse(file, "has another size or other bands than the first part",
                "merge parts of one render");

@@ -1,5 +1,6 @@
 #include "host/error.h"
-#include "host/film/exr_input.h"
+#include "host/exr_input.h"
+#include "host/exr_window.h"
 #include "host/film/exr_layout.h"
 #include "host/film/spectral_channels.h"
 #include "host/film/spectral_image.h"
@@ -27,7 +28,7 @@ namespace fs = std::filesystem;
 
 /// A band's channel in a file.
 struct BandChannel {
-    double wavelength_nm;
+    NamedWavelength wavelength;
     std::string name;
 };
 
@@ -36,21 +37,14 @@ struct BandChannel {
     throw_input_error({file.string()}, wrong, remedy);
 }
 
-int width_of(const Imath::Box2i& window) {
-    return window.max.x - window.min.x + 1;
-}
-int height_of(const Imath::Box2i& window) {
-    return window.max.y - window.min.y + 1;
-}
-
 std::vector<BandChannel> band_channels(const Imf::Header& header) {
     std::vector<BandChannel> bands;
     const Imf::ChannelList& channels = header.channels();
     for (auto channel = channels.begin(); channel != channels.end(); ++channel)
-        if (const auto wavelength_nm = wavelength_of_channel(channel.name()))
-            bands.push_back({*wavelength_nm, channel.name()});
+        if (const auto wavelength = band_of_channel(channel.name()))
+            bands.push_back({*wavelength, channel.name()});
     std::sort(bands.begin(), bands.end(), [](const BandChannel& a, const BandChannel& b) {
-        return a.wavelength_nm < b.wavelength_nm;
+        return a.wavelength.nm < b.wavelength.nm;
     });
     return bands;
 }
@@ -59,19 +53,21 @@ void check_channel(const fs::path& file, const Imf::Header& header, const std::s
     const Imf::Channel* const channel = header.channels().findChannel(name);
     if (!channel)
         refuse(file, fmt::format("channel {} is missing", name), "render the image again");
-    if (channel->type != Imf::FLOAT)
-        refuse(file, fmt::format("channel {} is not of type FLOAT", name),
-               "radiance does not fit half floats or integers; write it as 32-bit float");
+    if (channel->type != Imf::FLOAT && channel->type != Imf::HALF)
+        refuse(file, fmt::format("channel {} holds integers", name),
+               "write radiance as 32-bit float");
     if (channel->xSampling != 1 || channel->ySampling != 1)
         refuse(file, fmt::format("channel {} is subsampled", name),
                "write one value for every pixel");
 }
 
 /// The size is known before any pixel: refuses what this machine cannot hold.
-void check_memory(const fs::path& file, const Imf::Header& header, std::size_t channels) {
-    const Imath::Box2i window = header.dataWindow();
-    const double bytes = static_cast<double>(width_of(window)) * height_of(window) *
-                         static_cast<double>(channels) * sizeof(float);
+void check_memory(const fs::path& file, const ExrWindow& window, std::size_t channels) {
+    check_display_window(file, window, channels);
+    const std::size_t pixels =
+        window.pixels() + (window.data == window.display ? 0 : window.data_pixels());
+    const double bytes =
+        static_cast<double>(pixels) * static_cast<double>(channels) * sizeof(float);
     const double memory = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) *
                           static_cast<double>(::sysconf(_SC_PAGESIZE));
     if (bytes > 0.8 * memory)
@@ -91,18 +87,18 @@ WavelengthGrid grid_of(const fs::path& file, const Imf::Header& header,
     if (first && step && std::isfinite(step->value()) && step->value() > 0) {
         const WavelengthGrid grid{first->value(), step->value(), static_cast<int>(bands.size())};
         bool agrees = true;
-        for (int band = 0; band < grid.count; ++band)
-            agrees =
-                agrees && std::abs(grid.centre_nm(band) -
-                                   bands[static_cast<std::size_t>(band)].wavelength_nm) <= 1e-6;
+        for (int band = 0; band < grid.count; ++band) {
+            const NamedWavelength& named = bands[static_cast<std::size_t>(band)].wavelength;
+            agrees = agrees && std::abs(grid.centre_nm(band) - named.nm) <= 1e-6;
+        }
         if (agrees)
             return grid;
     }
-    std::vector<double> centres_nm;
+    std::vector<NamedWavelength> centres;
     for (const BandChannel& band : bands)
-        centres_nm.push_back(band.wavelength_nm);
+        centres.push_back(band.wavelength);
     try {
-        return grid_from_centres(centres_nm);
+        return grid_from_names(centres);
     } catch (const std::invalid_argument& error) {
         refuse(file, fmt::format("spectral channels are missing or uneven: {}", error.what()),
                "the S0 channels must ascend in equal steps");
@@ -117,41 +113,61 @@ struct Target {
 };
 
 void read_rows(Imf::MultiPartInputFile& input, int part, const std::vector<Target>& targets) {
-    const Imf::Header& header = input.header(part);
-    const Imath::Box2i window = header.dataWindow();
-    const auto width = static_cast<std::size_t>(width_of(window));
+    const ExrWindow window(input.header(part));
     Imf::FrameBuffer frame;
     for (const Target& target : targets) {
         const std::size_t x_stride = static_cast<std::size_t>(target.stride) * sizeof(float);
-        frame.insert(target.channel, Imf::Slice::Make(Imf::FLOAT, target.first, window, x_stride,
-                                                      x_stride * width));
+        frame.insert(target.channel,
+                     Imf::Slice::Make(Imf::FLOAT, target.first, window.data, x_stride,
+                                      x_stride * static_cast<std::size_t>(window.data_width())));
     }
     Imf::InputPart reader(input, part);
     reader.setFrameBuffer(frame);
-    reader.readPixels(window.min.y, window.max.y);
+    reader.readPixels(window.data.min.y, window.data.max.y);
 }
 
-void read_image(Imf::MultiPartInputFile& input, const fs::path& file, SpectralImage& image) {
-    const Imf::Header& header = input.header(0);
+[[noreturn]] void refuse_no_spectrum(const fs::path& file, const Imf::Header& header) {
+    const Imf::ChannelList& channels = header.channels();
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+        if (std::string_view(channel.name()).starts_with("T."))
+            refuse(file, "holds reflectance or re-radiation (T channels), no radiance",
+                   "give an image with channels S0.<nm>nm");
+    refuse(file, "has no spectral channels (S0.<nm>nm)",
+           "give a spectral image as `reradiant render` writes it");
+}
+
+/// The first part with a spectrum; the first of all where none has one.
+int spectral_part(const Imf::MultiPartInputFile& input) {
+    for (int part = 0; part < input.parts(); ++part)
+        if (!band_channels(input.header(part)).empty())
+            return part;
+    return 0;
+}
+
+void read_image(Imf::MultiPartInputFile& input, int part, const fs::path& file,
+                SpectralImage& image) {
+    const Imf::Header& header = input.header(part);
     if (header.hasType() && Imf::isDeepData(header.type()))
         refuse(file, "holds deep data", "give a flat spectral image");
     const std::vector<BandChannel> bands = band_channels(header);
     if (bands.empty())
-        refuse(file, "has no spectral channels (S0.<nm>nm)",
-               "give a spectral image as `reradiant render` writes it");
-    check_memory(file, header, bands.size());
+        refuse_no_spectrum(file, header);
+    const ExrWindow window(header);
+    check_memory(file, window, bands.size());
     for (const BandChannel& band : bands)
         check_channel(file, header, band.name);
 
-    image.width = width_of(header.dataWindow());
-    image.height = height_of(header.dataWindow());
+    image.width = static_cast<int>(window.width());
+    image.height = static_cast<int>(window.height());
+    image.left = window.display.min.x;
+    image.top = window.display.min.y;
     image.bands = grid_of(file, header, bands);
-    image.values.resize(static_cast<std::size_t>(image.width) *
-                        static_cast<std::size_t>(image.height) * bands.size());
+    std::vector<float> values(window.data_pixels() * bands.size());
     std::vector<Target> targets;
     for (std::size_t band = 0; band < bands.size(); ++band)
-        targets.push_back({bands[band].name, image.values.data() + band, image.bands.count});
-    read_rows(input, 0, targets);
+        targets.push_back({bands[band].name, values.data() + band, image.bands.count});
+    read_rows(input, part, targets);
+    image.values = fit_to_display(std::move(values), window, bands.size());
     for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
         const auto* const text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
         if (text && std::string_view(attribute.name()).starts_with(exr_layout::attribute_prefix))
@@ -159,18 +175,17 @@ void read_image(Imf::MultiPartInputFile& input, const fs::path& file, SpectralIm
     }
 }
 
-void read_statistics(Imf::MultiPartInputFile& input, int part, const fs::path& file,
+void read_statistics(Imf::MultiPartInputFile& input, int part, int image_part, const fs::path& file,
                      SpectralImage& image) {
     const Imf::Header& header = input.header(part);
-    if (header.dataWindow() != input.header(0).dataWindow())
+    if (header.dataWindow() != input.header(image_part).dataWindow())
         refuse(file, "the data windows of image and statistics differ", "render the image again");
-    const std::size_t pixels =
-        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    const ExrWindow window(header);
     std::vector<Target> targets;
     const auto want = [&](const char* name, std::vector<float>& values) {
         if (!header.channels().findChannel(name))
             return;
-        values.resize(pixels);
+        values.resize(window.data_pixels());
         targets.push_back({name, values.data(), 1});
     };
     want(exr_layout::sample_count_channel, image.sample_count);
@@ -178,8 +193,9 @@ void read_statistics(Imf::MultiPartInputFile& input, int part, const fs::path& f
     const std::string first_band =
         exr_layout::variance_prefix + spectral_channel_name(image.bands.centre_nm(0));
     if (header.channels().findChannel(first_band)) {
-        check_memory(file, header, static_cast<std::size_t>(image.bands.count));
-        image.variance_bands.resize(image.values.size());
+        check_memory(file, window, static_cast<std::size_t>(image.bands.count));
+        image.variance_bands.resize(window.data_pixels() *
+                                    static_cast<std::size_t>(image.bands.count));
         for (int band = 0; band < image.bands.count; ++band)
             targets.push_back(
                 {exr_layout::variance_prefix + spectral_channel_name(image.bands.centre_nm(band)),
@@ -189,6 +205,10 @@ void read_statistics(Imf::MultiPartInputFile& input, int part, const fs::path& f
         check_channel(file, header, target.channel);
     if (!targets.empty())
         read_rows(input, part, targets);
+    for (std::vector<float>* const values : {&image.sample_count, &image.variance_y})
+        *values = fit_to_display(std::move(*values), window, 1);
+    image.variance_bands = fit_to_display(std::move(image.variance_bands), window,
+                                          static_cast<std::size_t>(image.bands.count));
 }
 
 } // namespace
@@ -196,11 +216,12 @@ void read_statistics(Imf::MultiPartInputFile& input, int part, const fs::path& f
 SpectralImage read_spectral_exr(const fs::path& file) {
     return with_exr_input(file, [&](Imf::MultiPartInputFile& input) {
         SpectralImage image;
-        read_image(input, file, image);
-        for (int part = 1; part < input.parts(); ++part)
-            if (input.header(part).hasName() &&
+        const int image_part = spectral_part(input);
+        read_image(input, image_part, file, image);
+        for (int part = 0; part < input.parts(); ++part)
+            if (part != image_part && input.header(part).hasName() &&
                 input.header(part).name() == exr_layout::statistics_part)
-                read_statistics(input, part, file, image);
+                read_statistics(input, part, image_part, file, image);
         return image;
     });
 }

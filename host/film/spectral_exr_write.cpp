@@ -51,7 +51,9 @@ void check_shape(const SpectralImage& image) {
 }
 
 Imf::Header part_header(const SpectralImage& image, const char* name) {
-    Imf::Header header(image.width, image.height);
+    const Imath::V2i first(image.left, image.top);
+    const Imath::Box2i window(first, first + Imath::V2i(image.width - 1, image.height - 1));
+    Imf::Header header(window, window);
     header.setName(name);
     header.setType(Imf::SCANLINEIMAGE);
     header.compression() = Imf::ZIP_COMPRESSION;
@@ -126,7 +128,8 @@ void write_parts(const std::filesystem::path& file, const std::vector<Part>& par
         for (std::size_t i = 0; i < parts.size(); ++i) {
             Imf::OutputPart writer(output, static_cast<int>(i));
             writer.setFrameBuffer(parts[i].frame);
-            writer.writePixels(parts[i].header.dataWindow().max.y + 1);
+            const Imath::Box2i& window = parts[i].header.dataWindow();
+            writer.writePixels(window.max.y - window.min.y + 1);
         }
     }
     stream.finish();

@@ -13,6 +13,7 @@ namespace reradiant {
 /// A spectral image: float (height, width, band), radiance per nm.
 struct SpectralImage {
     int width = 0, height = 0;
+    int left = 0, top = 0; ///< of the first pixel in its film, which a file may say
     WavelengthGrid bands;
     std::vector<float> values;
     std::vector<float> sample_count; ///< (height, width) or empty
@@ -35,7 +36,9 @@ struct SpectralImage {
 /// "Images". Atomic. Throws an Error that names the file.
 void write_spectral_exr(const std::filesystem::path& file, const SpectralImage& image,
                         double exposure_ev = 0.0);
-/// Reads every row (CASES 52); input Error for a truncated file or missing channels.
+/// The image is the display window, black outside the data window. S0 channels may be FLOAT or
+/// HALF, of wavelengths or frequencies; they must ascend in equal steps. Every row is read; input
+/// Error for a truncated file or missing channels.
 SpectralImage read_spectral_exr(const std::filesystem::path& file);
 
 struct DisplayOptions {
@@ -57,7 +60,7 @@ struct Comparison {
     double bias = 0.0, bias_stderr = 0.0; ///< of the mean over pixels and bands
     double ciede2000 = 0.0;               ///< mean over pixels
 };
-/// image against reference; input Error unless sizes and bands agree.
+/// image against reference; input Error unless display windows and bands agree.
 Comparison compare_images(const SpectralImage& image, const SpectralImage& reference);
 
 } // namespace reradiant

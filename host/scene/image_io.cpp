@@ -43,15 +43,16 @@ int load_image(const std::string& name, const SourcePosition& at, ImageEncoding 
     const ImageKind kind = kind_of(file);
     if (kind == ImageKind::Other)
         throw_input_error(at, fmt::format("\"{}\" is no image", name), "give a PNG or an EXR file");
-    // The same PNG may be a colour in one place and data in another.
-    const bool linear_png = kind == ImageKind::Png && encoding == ImageEncoding::Linear;
+    // The same file may be colours in one place and data in another.
+    const bool is_linear = encoding == ImageEncoding::Linear;
     for (std::size_t i = 0; i < state.images.size(); ++i)
-        if (state.images[i].file == file && state.image_is_linear[i] == linear_png)
+        if (state.images[i].file == file && state.image_is_linear[i] == is_linear)
             return static_cast<int>(i);
-    Image image = kind == ImageKind::Png ? read_png_image(file, encoding) : read_exr_image(file);
+    Image image =
+        kind == ImageKind::Png ? read_png_image(file, encoding) : read_exr_image(file, encoding);
     image.file = file;
     state.images.push_back(std::move(image));
-    state.image_is_linear.push_back(linear_png);
+    state.image_is_linear.push_back(is_linear);
     return static_cast<int>(state.images.size()) - 1;
 }
 

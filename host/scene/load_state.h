@@ -50,7 +50,7 @@ public:
 
     std::vector<Texture> textures;     ///< Scene::textures
     std::vector<Image> images;         ///< Scene::images
-    std::vector<bool> image_is_linear; ///< of each image: a PNG that was read as data
+    std::vector<bool> image_is_linear; ///< of each image: it was read as data
     /// Textures that the values read now may refer to; null outside materials.
     TextureScope* texture_scope = nullptr;
 

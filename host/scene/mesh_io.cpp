@@ -1,6 +1,7 @@
 #include "host/scene/mesh_io.h"
 
 #include "host/scene/load_state.h"
+#include "host/scene/polygon.h"
 #include "host/scene/table_reader.h"
 
 #include <Eigen/Geometry>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -25,16 +27,43 @@ MeshShape parse_mesh(const std::filesystem::path& file, std::string_view bytes) 
         throw_input_error({file.string()},
                           fmt::format("\"{}\" is not the ending of a mesh file", ending),
                           "give a .ply or .obj file");
+    bytes = without_byte_order_mark(file, bytes);
     MeshShape mesh = ending == ".ply" ? parse_ply(file, bytes) : parse_obj(file, bytes);
     mesh.file = file;
     if (mesh.indices.empty())
-        throw_input_error({file.string()}, "the mesh has no faces", "give at least one face");
+        throw_input_error({file.string()}, "the mesh has no faces",
+                          "give at least one face that has an area");
     return mesh;
+}
+
+std::string_view without_byte_order_mark(const std::filesystem::path& file,
+                                         std::string_view bytes) {
+    using namespace std::string_view_literals;
+    for (const std::string_view mark : {"\xff\xfe"sv, "\xfe\xff"sv, "\0\0\xfe\xff"sv})
+        if (bytes.starts_with(mark))
+            throw_input_error({file.string(), 1, 1}, "the text is UTF-16 or UTF-32",
+                              "save it as UTF-8");
+    if (bytes.starts_with("\xef\xbb\xbf"))
+        bytes.remove_prefix(3);
+    return bytes;
 }
 
 void append_fan(const std::vector<std::uint32_t>& corners, MeshShape& mesh) {
     for (std::size_t i = 2; i < corners.size(); ++i)
         mesh.indices.insert(mesh.indices.end(), {corners[0], corners[i - 1], corners[i]});
+}
+
+void append_face(const std::vector<std::uint32_t>& vertices, std::span<const Vector3> corners,
+                 std::uint64_t number, const SourcePosition& at, MeshShape& mesh) {
+    if (vertices.size() == 3)
+        return append_fan(vertices, mesh);
+    try {
+        for (const std::uint32_t corner : triangulate_polygon(corners))
+            mesh.indices.push_back(vertices[corner]);
+    } catch (const std::invalid_argument& error) {
+        throw_input_error(at, fmt::format("face {} {}", number, error.what()),
+                          "cut it into polygons that do not");
+    }
 }
 
 void add_smooth_normals(MeshShape& mesh) {

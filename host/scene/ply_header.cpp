@@ -29,10 +29,19 @@ bool type_from_name(const std::string& name, PlyType& type) {
     return false;
 }
 
+/// The first line says how lines end. Where it is CR LF the header may not end at its CR: the LF
+/// would become the first byte of binary data.
+char line_end_of(std::string_view bytes) {
+    const std::size_t end = bytes.find_first_of("\r\n");
+    const bool is_cr_only = end != std::string_view::npos && bytes[end] == '\r' &&
+                            !bytes.substr(end).starts_with("\r\n");
+    return is_cr_only ? '\r' : '\n';
+}
+
 class HeaderReader {
 public:
     HeaderReader(const std::filesystem::path& file, std::string_view bytes)
-        : file_(file.string()), bytes_(bytes) {}
+        : file_(file.string()), bytes_(bytes), line_end_(line_end_of(bytes)) {}
 
     PlyHeader read();
 
@@ -48,13 +57,14 @@ private:
 
     std::string file_;
     std::string_view bytes_;
+    char line_end_;
     PlyHeader header_;
 };
 
 std::vector<std::string> HeaderReader::next_line() {
     ++header_.line_count;
     const std::string_view rest = bytes_.substr(header_.size);
-    const std::size_t length = rest.substr(0, MAX_LINE_LENGTH).find('\n');
+    const std::size_t length = rest.substr(0, MAX_LINE_LENGTH).find(line_end_);
     if (length == std::string_view::npos || header_.line_count > static_cast<int>(MAX_HEADER_LINES))
         fail("the PLY header does not end", "it ends with a line end_header");
     header_.size += length + 1;

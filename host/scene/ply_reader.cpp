@@ -1,125 +1,20 @@
 #include "host/scene/mesh_io.h"
 #include "host/scene/ply_header.h"
+#include "host/scene/ply_values.h"
+#include "host/scene/ply_wedges.h"
 #include "host/scene/table_reader.h"
 
-#include <algorithm>
-#include <bit>
-#include <charconv>
+#include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 namespace reradiant {
 
 namespace {
-
-/// What a value belongs to, made into text for an error only.
-struct PlyItem {
-    std::string_view element;
-    std::uint64_t index;
-
-    std::string text() const { return fmt::format("{} {}", element, index); }
-};
-
-/// The values after the header one by one, whatever the format.
-class PlyValues {
-public:
-    PlyValues(const std::filesystem::path& file, std::string_view bytes, const PlyHeader& header)
-        : file_(file.string()), bytes_(bytes), format_(header.format), next_(header.size),
-          line_(header.line_count + 1), line_start_(header.size) {}
-
-    /// The next value; integers up to 32 bits are exact as double.
-    double next(PlyType type, const PlyItem& what) {
-        return format_ == PlyFormat::Ascii ? next_ascii(what) : next_binary(type, what);
-    }
-    std::size_t remaining() const { return bytes_.size() - next_; }
-    /// Line and column of the last value (ascii), else the file.
-    SourcePosition position() const {
-        if (format_ != PlyFormat::Ascii)
-            return {file_};
-        return {file_, line_, static_cast<int>(start_ - line_start_) + 1};
-    }
-    /// " at byte N" for binary files, whose errors have no line.
-    std::string byte_text() const {
-        return format_ == PlyFormat::Ascii ? "" : fmt::format(" (at byte {})", start_);
-    }
-
-private:
-    double next_ascii(const PlyItem& what);
-    double next_binary(PlyType type, const PlyItem& what);
-    template <typename T>
-    double decode(const unsigned char* bytes) const {
-        T value;
-        std::memcpy(&value, bytes, sizeof(T));
-        return static_cast<double>(value);
-    }
-
-    std::string file_;
-    std::string_view bytes_;
-    PlyFormat format_;
-    std::size_t next_, start_ = 0;
-    int line_;
-    std::size_t line_start_;
-};
-
-double PlyValues::next_ascii(const PlyItem& what) {
-    while (next_ < bytes_.size() && std::strchr(" \t\r\n", bytes_[next_]) != nullptr) {
-        if (bytes_[next_] == '\n') {
-            ++line_;
-            line_start_ = next_ + 1;
-        }
-        ++next_;
-    }
-    start_ = next_;
-    const std::size_t end = std::min(bytes_.find_first_of(" \t\r\n", next_), bytes_.size());
-    const std::string_view token = bytes_.substr(start_, end - start_);
-    next_ = end;
-    if (token.empty())
-        throw_input_error(position(), fmt::format("the file ends before {}", what.text()),
-                          "the file is truncated or a count is wrong");
-    double value = 0.0;
-    const auto [stop, failure] = std::from_chars(token.data(), token.data() + token.size(), value);
-    if (failure == std::errc::result_out_of_range)
-        return std::numeric_limits<double>::infinity();
-    if (failure != std::errc() || stop != token.data() + token.size())
-        throw_input_error(position(), fmt::format("{} is \"{}\"", what.text(), token.substr(0, 40)),
-                          "write a number");
-    return value;
-}
-
-double PlyValues::next_binary(PlyType type, const PlyItem& what) {
-    const std::size_t size = ply_type_size(type);
-    start_ = next_;
-    if (remaining() < size)
-        throw_input_error({file_},
-                          fmt::format("the file ends before {}{}", what.text(), byte_text()),
-                          "the file is truncated or a count is wrong");
-    std::array<unsigned char, 8> raw{};
-    std::memcpy(raw.data(), bytes_.data() + next_, size);
-    next_ += size;
-    if ((format_ == PlyFormat::BigEndian) != (std::endian::native == std::endian::big))
-        std::reverse(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(size));
-    switch (type) {
-    case PlyType::Int8:
-        return decode<std::int8_t>(raw.data());
-    case PlyType::Uint8:
-        return decode<std::uint8_t>(raw.data());
-    case PlyType::Int16:
-        return decode<std::int16_t>(raw.data());
-    case PlyType::Uint16:
-        return decode<std::uint16_t>(raw.data());
-    case PlyType::Int32:
-        return decode<std::int32_t>(raw.data());
-    case PlyType::Uint32:
-        return decode<std::uint32_t>(raw.data());
-    case PlyType::Float32:
-        return decode<float>(raw.data());
-    default:
-        return decode<double>(raw.data());
-    }
-}
 
 constexpr std::size_t UNUSED = 8;
 
@@ -136,8 +31,8 @@ VertexColumns vertex_columns(const std::string& file, const PlyElement& element)
                                                              {"nx"},
                                                              {"ny"},
                                                              {"nz"},
-                                                             {"u", "s", "texture_u"},
-                                                             {"v", "t", "texture_v"}};
+                                                             {"u", "s", "texture_u", "texture_s"},
+                                                             {"v", "t", "texture_v", "texture_t"}};
     VertexColumns columns;
     columns.slot_of_property.assign(element.properties.size(), UNUSED);
     std::array<bool, 8> found{};
@@ -160,6 +55,33 @@ VertexColumns vertex_columns(const std::string& file, const PlyElement& element)
     return columns;
 }
 
+/// Which properties of a face hold what is read; -1 for none.
+struct FaceColumns {
+    int corners = -1;
+    int wedges = -1;  ///< list of u v of every corner
+    int texture = -1; ///< number of the image that u and v are in
+};
+
+FaceColumns face_columns(const std::string& file, const PlyElement& element) {
+    const auto is_list = [&](int column) {
+        return column >= 0 && element.properties[static_cast<std::size_t>(column)].is_list;
+    };
+    FaceColumns columns;
+    columns.corners = element.index_of("vertex_indices");
+    if (columns.corners < 0)
+        columns.corners = element.index_of("vertex_index");
+    if (!is_list(columns.corners))
+        throw_input_error({file, element.line, 1}, "faces have no list vertex_indices",
+                          "declare property list uchar int vertex_indices");
+    columns.wedges = element.index_of("texcoord");
+    if (!is_list(columns.wedges))
+        columns.wedges = -1;
+    columns.texture = element.index_of("texnumber");
+    if (is_list(columns.texture))
+        columns.texture = -1;
+    return columns;
+}
+
 /// Turns the elements of a PLY file into a mesh.
 class PlyReader {
 public:
@@ -173,7 +95,14 @@ private:
     void read_vertices(const PlyElement& element);
     float read_coordinate(const PlyProperty& property, const PlyItem& vertex);
     void read_faces(const PlyElement& element);
+    void read_face(const PlyElement& element, const FaceColumns& columns, std::uint64_t face);
     void read_corners(const PlyProperty& property, std::uint64_t face);
+    void read_wedges(const PlyProperty& property, std::uint64_t face);
+    void apply_wedges(std::uint64_t face);
+    void note_texture(double number);
+    void add_face(std::uint64_t face);
+    void skip_property(const PlyProperty& property, const PlyItem& what);
+    void warn_of_rest();
     void skip(const PlyElement& element);
     std::uint64_t read_list_size(const PlyProperty& property, const PlyItem& what);
     [[noreturn]] void fail(const std::string& wrong, const std::string& remedy) const {
@@ -185,7 +114,12 @@ private:
     PlyValues values_;
     std::uint64_t vertex_count_ = 0;
     std::vector<std::uint32_t> corners_;
+    std::vector<Vector3> positions_;  ///< of the corners
+    std::vector<float> wedge_values_; ///< u v of the corners
+    std::optional<double> texture_number_;
+    bool warned_of_textures_ = false;
     MeshShape mesh_;
+    std::optional<WedgeVertices> wedges_; ///< where faces have texture coordinates
 };
 
 std::uint64_t PlyReader::read_list_size(const PlyProperty& property, const PlyItem& what) {
@@ -242,40 +176,94 @@ void PlyReader::read_corners(const PlyProperty& property, std::uint64_t face) {
                  "vertices count from 0");
         corners_.push_back(static_cast<std::uint32_t>(index));
     }
-    append_fan(corners_, mesh_);
+}
+
+void PlyReader::read_wedges(const PlyProperty& property, std::uint64_t face) {
+    const PlyItem what{"face", face};
+    const std::uint64_t size = read_list_size(property, what);
+    wedge_values_.clear();
+    for (std::uint64_t i = 0; i < size; ++i)
+        wedge_values_.push_back(read_coordinate(property, what));
+}
+
+/// Faces without texture coordinates have none of theirs: (0, 0), as corners of an OBJ file.
+void PlyReader::apply_wedges(std::uint64_t face) {
+    if (wedge_values_.empty())
+        wedge_values_.assign(2 * corners_.size(), 0.0f);
+    if (wedge_values_.size() != 2 * corners_.size())
+        fail(fmt::format("face {} has {} corners and {} numbers in texcoord", face, corners_.size(),
+                         wedge_values_.size()),
+             "write u and v of every corner, or none");
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+        corners_[i] =
+            wedges_->with_texture(corners_[i], wedge_values_[2 * i], wedge_values_[2 * i + 1]);
+}
+
+void PlyReader::note_texture(double number) {
+    if (texture_number_ && *texture_number_ != number && !warned_of_textures_) {
+        spdlog::warn("{}: the faces lie in several images (texnumber); one texture is used for all "
+                     "of them",
+                     file_);
+        warned_of_textures_ = true;
+    }
+    texture_number_ = number;
+}
+
+void PlyReader::add_face(std::uint64_t face) {
+    positions_.clear();
+    for (const std::uint32_t corner : corners_) {
+        const float* const p = &mesh_.positions[3 * std::size_t{corner}];
+        positions_.push_back({p[0], p[1], p[2]});
+    }
+    if (wedges_)
+        apply_wedges(face);
+    append_face(corners_, positions_, face, values_.position(), mesh_);
+}
+
+void PlyReader::skip_property(const PlyProperty& property, const PlyItem& what) {
+    const std::uint64_t size = property.is_list ? read_list_size(property, what) : 1;
+    for (std::uint64_t k = 0; k < size; ++k)
+        values_.next(property.type, what);
 }
 
 void PlyReader::skip(const PlyElement& element) {
     if (element.properties.empty())
         return;
     for (std::uint64_t i = 0; i < element.count; ++i)
-        for (const PlyProperty& property : element.properties) {
-            const std::uint64_t size =
-                property.is_list ? read_list_size(property, {element.name, i}) : 1;
-            for (std::uint64_t k = 0; k < size; ++k)
-                values_.next(property.type, {element.name, i});
-        }
+        for (const PlyProperty& property : element.properties)
+            skip_property(property, {element.name, i});
+}
+
+void PlyReader::read_face(const PlyElement& element, const FaceColumns& columns,
+                          std::uint64_t face) {
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+        const PlyProperty& property = element.properties[i];
+        const int column = static_cast<int>(i);
+        if (column == columns.corners)
+            read_corners(property, face);
+        else if (column == columns.wedges)
+            read_wedges(property, face);
+        else if (column == columns.texture)
+            note_texture(values_.next(property.type, {"face", face}));
+        else
+            skip_property(property, {"face", face});
+    }
+    add_face(face);
 }
 
 void PlyReader::read_faces(const PlyElement& element) {
-    int corners = element.index_of("vertex_indices");
-    if (corners < 0)
-        corners = element.index_of("vertex_index");
-    if (corners < 0 || !element.properties[static_cast<std::size_t>(corners)].is_list)
-        throw_input_error({file_, element.line, 1}, "faces have no list vertex_indices",
-                          "declare property list uchar int vertex_indices");
+    const FaceColumns columns = face_columns(file_, element);
+    if (columns.wedges >= 0)
+        wedges_.emplace(mesh_);
     for (std::uint64_t face = 0; face < element.count; ++face)
-        for (std::size_t i = 0; i < element.properties.size(); ++i) {
-            const PlyProperty& property = element.properties[i];
-            if (i == static_cast<std::size_t>(corners)) {
-                read_corners(property, face);
-                continue;
-            }
-            const PlyItem what{"face", face};
-            const std::uint64_t size = property.is_list ? read_list_size(property, what) : 1;
-            for (std::uint64_t k = 0; k < size; ++k)
-                values_.next(property.type, what);
-        }
+        read_face(element, columns, face);
+}
+
+/// A count in the header that is too small would leave faces out without a word.
+void PlyReader::warn_of_rest() {
+    if (values_.has_more())
+        spdlog::warn("{}: more follows after the last element{}; it is left out",
+                     values_.position().text(), values_.byte_text());
 }
 
 MeshShape PlyReader::read() {
@@ -293,10 +281,14 @@ MeshShape PlyReader::read() {
                 throw_input_error({file_, element.line, 1}, "faces stand before the vertices",
                                   "write the vertices first");
             read_faces(element);
+        } else if (element.name == "tristrips") {
+            throw_input_error({file_, element.line, 1}, "triangle strips are not read",
+                              "write the triangles as faces");
         } else {
             skip(element);
         }
     }
+    warn_of_rest();
     return std::move(mesh_);
 }
 

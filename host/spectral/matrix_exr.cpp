@@ -1,29 +1,34 @@
 #include "host/atomic_file.h"
-#include "host/exr_limits.h"
+#include "host/exr_input.h"
+#include "host/exr_window.h"
 #include "host/spectral/matrix_formats.h"
 #include "host/spectral/matrix_io.h"
-#include "host/spectral/text_reader.h"
+#include "host/spectral/spectral_names.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <stdexcept>
 
 // Bispectral image of one pixel in the layout of Fichet, Pacanowski and Wilkie, "An OpenEXR
 // Layout for Spectral Images", JCGT 10(3), 2021: channels T.<excitation>nm.<emission>nm, the
-// diagonal T.<wavelength>nm, a comma for the decimal point. Channels are FLOAT: the file keeps
-// about 7 digits, a CSV keeps all.
+// diagonal T.<wavelength>nm, a comma for the decimal point. Channels that are not there are zero.
+// Those that are written are FLOAT: the file keeps about 7 digits, a CSV keeps all.
 
 namespace reradiant {
 
@@ -31,36 +36,20 @@ namespace {
 
 constexpr double name_rounding_nm = 1e-6;
 
+/// OpenImageIO refuses more unless told otherwise.
+constexpr std::size_t most_channels_elsewhere = 1024;
+
 struct Channel {
     std::string name;
-    double excitation_nm = 0.0, emission_nm = 0.0;
+    NamedWavelength excitation, emission;
     float value = 0.0f;
 };
-
-std::string wavelength_text(double nm) {
-    std::string text = fmt::format("{:.6f}nm", nm); // fmt knows no locale
-    std::replace(text.begin(), text.end(), '.', ',');
-    return text;
-}
+/// Wavelengths of an axis, ascending.
+using Axis = std::map<double, NamedWavelength>;
 
 std::string channel_name(double excitation_nm, double emission_nm, bool diagonal) {
-    return diagonal ? "T." + wavelength_text(emission_nm)
-                    : "T." + wavelength_text(excitation_nm) + "." + wavelength_text(emission_nm);
-}
-
-/// Takes "380,000000nm" from the front of the text; nothing when it is something else.
-std::optional<double> take_wavelength(std::string_view& text) {
-    const auto unit = text.find("nm");
-    if (unit == std::string_view::npos || unit > 24)
-        return std::nullopt;
-    std::string number(text.substr(0, unit));
-    std::replace(number.begin(), number.end(), ',', '.');
-    double nm = 0.0;
-    const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), nm);
-    if (error != std::errc() || stop != number.data() + number.size() || !(nm > 0.0 && nm <= 1e6))
-        return std::nullopt;
-    text.remove_prefix(unit + 2);
-    return nm;
+    return diagonal ? "T." + wavelength_name(emission_nm)
+                    : "T." + wavelength_name(excitation_nm) + "." + wavelength_name(emission_nm);
 }
 
 std::optional<Channel> parse_channel(const std::string& name) {
@@ -68,13 +57,13 @@ std::optional<Channel> parse_channel(const std::string& name) {
     if (!rest.starts_with("T."))
         return std::nullopt;
     rest.remove_prefix(2);
-    const auto first = take_wavelength(rest);
+    const auto first = take_named_wavelength(rest);
     if (first && rest.empty())
         return Channel{name, *first, *first, 0.0f};
     if (!first || !rest.starts_with('.'))
         return std::nullopt;
     rest.remove_prefix(1);
-    const auto second = take_wavelength(rest);
+    const auto second = take_named_wavelength(rest);
     if (!second || !rest.empty())
         return std::nullopt;
     return Channel{name, *first, *second, 0.0f};
@@ -107,42 +96,60 @@ std::vector<Channel> channels_of(const Imf::Header& header, const SourcePosition
     return channels;
 }
 
+/// The grid that the attributes give, where every name lies on it.
+std::optional<WavelengthGrid> exact_grid(const Imf::Header& header, const std::string& prefix,
+                                         const Axis& axis) {
+    const auto* const count = header.findTypedAttribute<Imf::IntAttribute>(prefix + "Count");
+    const WavelengthGrid grid{number_attribute(header, (prefix + "FromNm").c_str(), 0.0),
+                              number_attribute(header, (prefix + "StepNm").c_str(), 0.0),
+                              count ? count->value() : static_cast<int>(axis.size())};
+    if (!(grid.step_nm > 0.0 && grid.from_nm > 0.0 && std::isfinite(grid.to_nm())))
+        return std::nullopt;
+    for (const auto& [nm, ignored] : axis) {
+        const int band = grid.band_of(nm);
+        if (band < 0 || std::abs(grid.centre_nm(band) - nm) > name_rounding_nm)
+            return std::nullopt;
+    }
+    return grid;
+}
+
 /// Grid of one axis: from the exact attributes when they agree with the names, else from the names.
-WavelengthGrid grid_of(const Imf::Header& header, const std::string& axis_name,
-                       const std::map<double, int>& wavelengths_nm,
+WavelengthGrid grid_of(const Imf::Header& header, const std::string& axis_name, const Axis& axis,
                        const SourcePosition& position) {
-    std::vector<PlacedWavelength> axis;
-    for (const auto& [nm, ignored] : wavelengths_nm)
-        axis.push_back({nm, position});
     const std::string prefix = "reradiant:" + axis_name;
+    if (const auto exact = exact_grid(header, prefix, axis))
+        return *exact;
     const double step_nm = number_attribute(header, (prefix + "StepNm").c_str(), 0.0);
-    const double from_nm = number_attribute(header, (prefix + "FromNm").c_str(), 0.0);
     if (axis.size() == 1 && !(step_nm > 0.0))
         throw_input_error(position,
                           fmt::format("the step of the only {} band is not given", axis_name),
                           fmt::format("add the attribute {}StepNm (double)", prefix));
-    const WavelengthGrid named = axis_grid(axis, axis_name.c_str(), step_nm);
-    const WavelengthGrid exact{from_nm, step_nm, named.count};
-    const bool agree = step_nm > 0.0 && from_nm > 0.0 &&
-                       std::abs(exact.from_nm - named.from_nm) <= name_rounding_nm &&
-                       std::abs(exact.to_nm() - named.to_nm()) <= name_rounding_nm;
-    return agree ? exact : named;
+    std::vector<NamedWavelength> wavelengths;
+    for (const auto& [ignored, wavelength] : axis)
+        wavelengths.push_back(wavelength);
+    try {
+        return grid_from_names(wavelengths, step_nm);
+    } catch (const std::invalid_argument& error) {
+        throw_input_error(position, fmt::format("{} wavelengths: {}", axis_name, error.what()),
+                          "bands must be equally spaced");
+    }
 }
 
-void read_values(Imf::InputFile& file, std::vector<Channel>& channels,
+void read_values(Imf::MultiPartInputFile& file, int part, std::vector<Channel>& channels,
                  const SourcePosition& position) {
-    const Imath::Box2i window = file.header().dataWindow();
-    if (window.min != window.max)
+    const ExrWindow window(file.header(part));
+    if (window.data.min != window.data.max || window.display != window.data)
         throw_input_error(position, "the image is not of one pixel",
                           "a re-radiation matrix is an image of 1 x 1");
     Imf::FrameBuffer buffer;
     for (Channel& channel : channels) {
         // OpenEXR addresses pixels from the origin of coordinates, not of the window.
-        buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, &channel.value, window,
+        buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, &channel.value, window.data,
                                                      sizeof(float), sizeof(float)));
     }
-    file.setFrameBuffer(buffer);
-    file.readPixels(window.min.y);
+    Imf::InputPart reader(file, part);
+    reader.setFrameBuffer(buffer);
+    reader.readPixels(window.data.min.y);
     for (const Channel& channel : channels)
         if (!std::isfinite(channel.value))
             throw_input_error(position, fmt::format("channel {} is not finite", channel.name),
@@ -159,29 +166,58 @@ MatrixQuantity quantity_of(const Imf::Header& header, const SourcePosition& posi
     return quantity == "per-band" ? MatrixQuantity::PerBand : MatrixQuantity::DensityPerNm;
 }
 
-ReradiationMatrix matrix_of(Imf::InputFile& file, const SourcePosition& position) {
-    const Imf::Header& header = file.header();
-    std::vector<Channel> channels = channels_of(header, position);
-    std::map<double, int> emission_nm, excitation_nm;
+/// Channels that the file leaves out are zero.
+void fill(ReradiationMatrix& matrix, const std::vector<Channel>& channels,
+          const SourcePosition& position) {
+    matrix.values.setZero(matrix.emission.count, matrix.excitation.count);
+    std::map<std::pair<int, int>, const Channel*> given;
     for (const Channel& channel : channels) {
-        emission_nm.emplace(channel.emission_nm, 0);
-        excitation_nm.emplace(channel.excitation_nm, 0);
+        const std::pair entry{matrix.emission.band_of(channel.emission.nm),
+                              matrix.excitation.band_of(channel.excitation.nm)};
+        const auto [other, is_new] = given.try_emplace(entry, &channel);
+        if (!is_new)
+            throw_input_error(position,
+                              fmt::format("channels {} and {} hold the same entry",
+                                          other->second->name, channel.name),
+                              "give it once");
+        matrix.values(entry.first, entry.second) = channel.value;
     }
-    require_matrix_size(position, emission_nm.size(), excitation_nm.size());
+}
+
+/// The first part with channels of a matrix; the first of all where none has any.
+int matrix_part(const Imf::MultiPartInputFile& file) {
+    for (int part = 0; part < file.parts(); ++part) {
+        const Imf::ChannelList& channels = file.header(part).channels();
+        for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+            if (parse_channel(channel.name()))
+                return part;
+    }
+    return 0;
+}
+
+ReradiationMatrix matrix_of(Imf::MultiPartInputFile& file, const SourcePosition& position) {
+    const int part = matrix_part(file);
+    const Imf::Header& header = file.header(part);
+    if (header.hasType() && Imf::isDeepData(header.type()))
+        throw_input_error(position, "the image is deep", "a re-radiation matrix is a flat image");
+    std::vector<Channel> channels = channels_of(header, position);
+    Axis emission, excitation;
+    for (const Channel& channel : channels) {
+        emission.emplace(channel.emission.nm, channel.emission);
+        excitation.emplace(channel.excitation.nm, channel.excitation);
+    }
     const MatrixQuantity quantity = quantity_of(header, position);
     ReradiationMatrix matrix;
-    matrix.emission = grid_of(header, "emission", emission_nm, position);
-    matrix.excitation = grid_of(header, "excitation", excitation_nm, position);
+    matrix.emission = grid_of(header, "emission", emission, position);
+    matrix.excitation = grid_of(header, "excitation", excitation, position);
+    require_matrix_size(position, static_cast<std::size_t>(matrix.emission.count),
+                        static_cast<std::size_t>(matrix.excitation.count));
     matrix.kind = text_attribute(header, "reradiant:kind") == "measured" ? MatrixKind::Measured
                                                                          : MatrixKind::Model;
     matrix.anti_stokes_allowed = text_attribute(header, "reradiant:antiStokes") == "allowed";
     matrix.geometry = text_attribute(header, "reradiant:geometry");
-    read_values(file, channels, position);
-    // Channels that the file leaves out are zero, as the layout says.
-    matrix.values.setZero(matrix.emission.count, matrix.excitation.count);
-    for (const Channel& channel : channels)
-        matrix.values(matrix.emission.band_of(channel.emission_nm),
-                      matrix.excitation.band_of(channel.excitation_nm)) = channel.value;
+    read_values(file, part, channels, position);
+    fill(matrix, channels, position);
     if (quantity == MatrixQuantity::DensityPerNm)
         scale_off_diagonal(matrix, matrix.excitation.step_nm);
     return matrix;
@@ -199,44 +235,51 @@ void set_attributes(Imf::Header& header, const ReradiationMatrix& matrix) {
     text("reradiant:kind", matrix.kind == MatrixKind::Model ? "model" : "measured");
     text("reradiant:antiStokes", matrix.anti_stokes_allowed ? "allowed" : "refused");
     text("reradiant:geometry", matrix.geometry);
-    number("reradiant:emissionFromNm", matrix.emission.from_nm);
-    number("reradiant:emissionStepNm", matrix.emission.step_nm);
-    number("reradiant:excitationFromNm", matrix.excitation.from_nm);
-    number("reradiant:excitationStepNm", matrix.excitation.step_nm);
+    const auto grid = [&](const std::string& prefix, const WavelengthGrid& bands) {
+        number((prefix + "FromNm").c_str(), bands.from_nm);
+        number((prefix + "StepNm").c_str(), bands.step_nm);
+        header.insert(prefix + "Count", Imf::IntAttribute(bands.count));
+    };
+    grid("reradiant:emission", matrix.emission);
+    grid("reradiant:excitation", matrix.excitation);
 }
 
+/// Without entries that are impossible: emission below the excitation, and zero.
 std::vector<Channel> channels_to_write(const ReradiationMatrix& matrix) {
     std::vector<Channel> channels;
     for (int i = 0; i < matrix.excitation.count; ++i) {
         const int diagonal = diagonal_row(matrix, i);
         for (int o = 0; o < matrix.emission.count; ++o) {
             const double li = matrix.excitation.centre_nm(i), lo = matrix.emission.centre_nm(o);
-            channels.push_back({channel_name(li, lo, o == diagonal), li, lo,
-                                static_cast<float>(matrix.values(o, i))});
+            const auto value = static_cast<float>(matrix.values(o, i));
+            if (o != diagonal && lo < li && value == 0.0f)
+                continue;
+            channels.push_back({channel_name(li, lo, o == diagonal), {li, 0.0}, {lo, 0.0}, value});
         }
     }
+    // An image has a channel, though it be an impossible one.
+    if (channels.empty()) {
+        const double li = matrix.excitation.centre_nm(0), lo = matrix.emission.centre_nm(0);
+        channels.push_back({channel_name(li, lo, false), {li, 0.0}, {lo, 0.0}, 0.0f});
+    }
     return channels;
+}
+
+void warn_of_count(const std::filesystem::path& file, std::size_t channels) {
+    if (channels > most_channels_elsewhere)
+        spdlog::warn("{}: {} channels; OpenImageIO, and colour-science by it, reads up to {} until "
+                     "its attribute limits:channels is set higher (rr.colour_science does so)",
+                     file.string(), channels, most_channels_elsewhere);
 }
 
 } // namespace
 
 ReradiationMatrix read_matrix_exr(const std::filesystem::path& file) {
     const SourcePosition position{file.string()};
-    std::error_code code;
-    if (!std::filesystem::is_regular_file(file, code))
-        throw_input_error(position, "cannot be read", "name an existing file");
-    refuse_hostile_exr(file);
-    try {
-        Imf::InputFile input(file.c_str());
-        const ReradiationMatrix matrix = matrix_of(input, position);
-        refuse_undeclared_anti_stokes(matrix, position);
-        return matrix;
-    } catch (const Error&) {
-        throw;
-    } catch (const std::exception& error) {
-        throw_input_error(position, fmt::format("this is no whole EXR image: {}", error.what()),
-                          "write it again");
-    }
+    const ReradiationMatrix matrix = with_exr_input(
+        file, [&](Imf::MultiPartInputFile& input) { return matrix_of(input, position); });
+    refuse_undeclared_anti_stokes(matrix, position);
+    return matrix;
 }
 
 void write_matrix_exr(const std::filesystem::path& file, const ReradiationMatrix& matrix) {
@@ -258,6 +301,7 @@ void write_matrix_exr(const std::filesystem::path& file, const ReradiationMatrix
         output.setFrameBuffer(buffer);
         output.writePixels(1);
     });
+    warn_of_count(file, channels.size());
 }
 
 } // namespace reradiant

@@ -21,7 +21,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     const auto file = fuzz::put("input.image", fuzz::text_of(bytes, size));
     const bool is_png = size > 0 && bytes[0] == 0x89;
     fuzz::read_or_refuse([&] {
-        check_image(is_png ? read_png_image(file, ImageEncoding::Srgb) : read_exr_image(file));
+        check_image(is_png ? read_png_image(file, ImageEncoding::Srgb)
+                           : read_exr_image(file, ImageEncoding::Srgb));
     });
     return 0;
 }

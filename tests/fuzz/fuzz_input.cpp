@@ -25,7 +25,6 @@ struct Folder {
         path = (usable ? in_memory : fs::temp_directory_path()) /
                ("reradiant-fuzz-" + std::to_string(::getpid()));
         fs::create_directories(path);
-        spdlog::set_level(spdlog::level::off);
         ::setenv("RERADIANT_CACHE", (path / "cache").c_str(), 1);
         ::setenv("HOME", path.c_str(), 1);
     }
@@ -34,6 +33,12 @@ struct Folder {
         fs::remove_all(path, ignored);
     }
 };
+
+/// Before the first input, of targets without a folder too: warnings would be most of the time.
+[[maybe_unused]] const bool is_quiet = [] {
+    spdlog::set_level(spdlog::level::off);
+    return true;
+}();
 
 } // namespace
 

@@ -13,6 +13,9 @@ from .matrix import Reradiation
 from .spectrum import Spectrum
 
 
+_MOST_CHANNELS = 1 << 22  # as many entries as the library reads of a matrix
+
+
 def _colour() -> Any:
     try:
         import colour
@@ -20,6 +23,33 @@ def _colour() -> Any:
         raise RunError("colour-science is not installed; install the package colour-science"
                        ) from None
     return colour
+
+
+def _raise_channel_limit() -> None:
+    """OpenImageIO, by which colour-science reads images, refuses more than 1024 channels; a matrix
+    of 49 x 49 bands has 1225."""
+    try:
+        import OpenImageIO
+    except ImportError:
+        raise RunError("OpenImageIO is not installed; install the package OpenImageIO") from None
+    limit = OpenImageIO.get_int_attribute("limits:channels", 1024)
+    OpenImageIO.attribute("limits:channels", max(limit, _MOST_CHANNELS))
+
+
+def read_spectral_image(file: Any, **options: Any) -> Any:
+    """What colour.read_spectral_image_Fichet2021 reads of a spectral or bispectral EXR, of as many
+    channels as it has; `options` are those of that function. A bispectral image is {excitation in
+    nm: (emissions in nm, values), "T": (wavelengths, the diagonal)}."""
+    colour = _colour()
+    _raise_channel_limit()
+    return colour.read_spectral_image_Fichet2021(str(file), **options)
+
+
+def write_spectral_image(components: Any, file: Any, **options: Any) -> Any:
+    """The other way round, by colour.write_spectral_image_Fichet2021."""
+    colour = _colour()
+    _raise_channel_limit()
+    return colour.write_spectral_image_Fichet2021(components, str(file), **options)
 
 
 def to_distribution(spectrum: Spectrum, nm: Any) -> Any:
