@@ -1,5 +1,7 @@
 #include "host/scene/toml_document.h"
 
+#include "host/plain_text.h"
+
 #include <fmt/format.h>
 
 namespace reradiant {
@@ -53,7 +55,8 @@ SourcePosition position_of(const std::string& file, const toml::source_region& r
     return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
-toml::table parse_toml(const std::string& file, std::string_view text) {
+toml::table parse_toml(const std::string& file, std::string_view bytes) {
+    const std::string text = plain_text(bytes);
     refuse_deep_keys(file, text);
     try {
         return toml::parse(text, file);
