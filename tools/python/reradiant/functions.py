@@ -273,9 +273,9 @@ def colour(matrix: Any, illuminant: Union[str, Sequence[str], Mapping[str, Spect
     20.0
     """
     given = _matrix("matrix", matrix)
-    other = None if against is None else _matrix("against", against)._matrix
+    other = None if against is None else _matrix("against", against)._whole()
     by_bands = not _checks.flag("e308", e308)
-    return {name: given._matrix.colour(name, light._spectrum, not by_bands, other)
+    return {name: given._whole().colour(name, light._spectrum, not by_bands, other)
             for name, light in _lights(illuminant).items()}
 
 
