@@ -7,8 +7,9 @@
 #include "host/scene/scene_table.h"
 #include "host/scene/toml_document.h"
 #include "host/spectral/matrix_io.h"
-#include "host/spectral/text_reader.h"
+#include "host/spectral/spectrum_formats.h"
 #include "tools/command.h"
+#include "tools/file_kind.h"
 #include "tools/outputs.h"
 
 #include <fmt/format.h>
@@ -85,7 +86,7 @@ void convert_matrix(const ConvertOptions& options) {
 
 void convert_spectrum(const ConvertOptions& options) {
     refuse_form_options(options, "are for re-radiation matrices only");
-    const NumberTable table = read_number_table(options.in, 2);
+    const NumberTable table = read_spectrum_table(options.in);
     write_if_it_loads(
         options,
         [&](const auto& file) { write_spectrum(file, table.columns[0], table.columns[1]); },
@@ -131,7 +132,8 @@ void convert_scene(const ConvertOptions& options) {
 
 /// What was converted.
 const char* convert(const ConvertOptions& options) {
-    if (is_mitsuba_scene(options.in)) {
+    // By what the files hold: a spectrum of IES TM-27 may end with .xml as a scene does.
+    if (is_mitsuba_scene(options.in) && file_kind(options.in) == FileKind::Scene) {
         convert_scene(options);
         return "scene";
     }
@@ -155,11 +157,13 @@ int run_convert(const ConvertOptions& options, const CommonOptions& common) {
 
 void add_convert_command(CLI::App& program, CommandContext& context) {
     const auto options = std::make_shared<ConvertOptions>();
-    CLI::App* const command = program.add_subcommand(
-        "convert", "converts matrices (BFC, CSV, EXR), spectra (SPD, CSV) and scenes of Mitsuba 3");
+    CLI::App* const command =
+        program.add_subcommand("convert", "converts matrices (BFC, CSV, EXR), spectra (SPD, CSV, "
+                                          "JCAMP-DX, CGATS, SPDX) and scenes of Mitsuba 3");
     command
         ->add_option("IN", options->in,
-                     "matrix (.bfc, .csv, .exr), spectrum (.spd, .csv) or Mitsuba scene (.xml)")
+                     "matrix (.bfc, .csv, .exr), spectrum (.spd, .csv, JCAMP-DX, CGATS, .spdx) or "
+                     "Mitsuba scene (.xml)")
         ->required();
     command->add_option("OUT", options->out, "file to write; its ending says the format")
         ->required();

@@ -3,9 +3,10 @@
 #include "host/error.h"
 #include "host/film/exr_channels.h"
 #include "host/regular_file.h"
+#include "host/spectral/matrix_io.h"
+#include "host/spectral/text_format.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,6 @@ namespace reradiant {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower_case_ending(const fs::path& file) {
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return ending;
-}
 
 std::ifstream open(const fs::path& file) {
     std::ifstream stream = open_regular_file(file);
@@ -41,17 +35,6 @@ bool has_line(const fs::path& file, const std::string& text) {
     return false;
 }
 
-/// A matrix begins with the comment "# reradiation", a spectrum does not.
-bool begins_as_matrix(const fs::path& file) {
-    std::ifstream stream = open(file);
-    for (std::string line; std::getline(stream, line);) {
-        const std::size_t first = line.find_first_not_of("# \t\r");
-        if (first != std::string::npos)
-            return line.starts_with("#") && line.compare(first, 11, "reradiation") == 0;
-    }
-    return false;
-}
-
 bool is_bispectral(const fs::path& file) {
     const std::vector<std::string> names = exr_channel_names(file);
     return std::any_of(names.begin(), names.end(),
@@ -66,16 +49,17 @@ FileKind file_kind(const fs::path& file) {
     if (ending == ".toml")
         return has_line(file, "[material]") && !has_line(file, "[film]") ? FileKind::Material
                                                                          : FileKind::Scene;
-    if (ending == ".xml")
-        return FileKind::Scene;
-    if (ending == ".csv")
-        return begins_as_matrix(file) ? FileKind::Matrix : FileKind::Spectrum;
     if (ending == ".exr")
         return is_bispectral(file) ? FileKind::Matrix : FileKind::Image;
     if (ending == ".bfc")
         return FileKind::Matrix;
-    if (ending == ".spd")
+    const TextFormat format = text_format_of(file);
+    if (format == TextFormat::JcampDx || format == TextFormat::Cgats || format == TextFormat::Tm27)
         return FileKind::Spectrum;
+    if (ending == ".xml")
+        return FileKind::Scene;
+    if (ending == ".csv" || ending == ".spd")
+        return holds_reradiation(file) ? FileKind::Matrix : FileKind::Spectrum;
     throw_input_error({file.string()}, "has no ending that is known",
                       "endings are .toml, .xml, .csv, .exr, .bfc, .spd");
 }

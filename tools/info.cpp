@@ -4,6 +4,7 @@
 #include "host/report/json_file.h"
 #include "host/scene/scene.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/spectrum_formats.h"
 #include "tools/command.h"
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
@@ -83,13 +84,14 @@ Json describe_matrix(const fs::path& file) {
 }
 
 Json describe_spectrum(const fs::path& file) {
-    const Spectrum spectrum = read_spectrum(file);
-    const double from = spectrum.data_from_nm(), to = spectrum.data_to_nm();
+    const NumberTable table = read_spectrum_table(file);
+    const auto [low, high] = std::minmax_element(table.columns[1].begin(), table.columns[1].end());
+    const double from = table.columns[0].front(), to = table.columns[0].back();
     return {{"kind", "spectrum"},
             {"from_nm", from},
             {"to_nm", to},
-            {"lowest", spectrum.minimum(from, to)},
-            {"highest", spectrum.maximum(from, to)}};
+            {"lowest", *low},
+            {"highest", *high}};
 }
 
 Json describe_scene(const fs::path& file) {
@@ -148,7 +150,11 @@ void add_info_command(CLI::App& program, CommandContext& context) {
     auto file = std::make_shared<fs::path>();
     CLI::App* const command = program.add_subcommand(
         "info", "Says what a file holds: image, re-radiation matrix, spectrum, scene, material");
-    command->add_option("FILE", *file, "EXR, CSV, BFC, SPD or TOML file")->required();
+    command
+        ->add_option(
+            "FILE", *file,
+            "EXR, CSV, BFC, SPD, TOML or XML file, or a spectrum of JCAMP-DX, CGATS or IES TM-27")
+        ->required();
     command->footer("Example: reradiant info out.exr");
     command->callback([file, &context] {
         check_outputs(context.common, {}, {*file});

@@ -4,6 +4,7 @@
 #include "host/scene/mesh_io.h"
 #include "host/scene/scene.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/spectrum_formats.h"
 #include "tools/command.h"
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
@@ -60,12 +61,13 @@ Json validate_matrix(const fs::path& file) {
 }
 
 Json validate_spectrum(const fs::path& file) {
-    const Spectrum spectrum = read_spectrum(file);
-    const double from = spectrum.data_from_nm(), to = spectrum.data_to_nm();
+    const NumberTable table = read_spectrum_table(file);
+    const auto [low, high] = std::minmax_element(table.columns[1].begin(), table.columns[1].end());
+    const double from = table.columns[0].front(), to = table.columns[0].back();
     return {{"kind", "spectrum"},
             {"range", range_text(from, to)},
-            {"lowest", spectrum.minimum(from, to)},
-            {"highest", spectrum.maximum(from, to)}};
+            {"lowest", *low},
+            {"highest", *high}};
 }
 
 Json validate_material(const fs::path& file) {
@@ -143,7 +145,9 @@ void add_validate_command(CLI::App& program, CommandContext& context) {
         "validate", "Checks a scene, material, re-radiation matrix, spectrum or mesh");
     CLI::Option_group* const what = command->add_option_group("what");
     what->require_option(1);
-    what->add_option("FILE", options->file, "TOML, XML, CSV, BFC, EXR, SPD, PLY or OBJ file");
+    what->add_option("FILE", options->file,
+                     "TOML, XML, CSV, BFC, EXR, SPD, PLY or OBJ file, or a spectrum of JCAMP-DX, "
+                     "CGATS or IES TM-27");
     what->add_flag("--reference", options->reference,
                    "print every key of scene and material files, as Markdown");
     command->footer("Examples:\n"

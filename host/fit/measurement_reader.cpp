@@ -20,8 +20,8 @@ constexpr std::string_view headings =
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 struct Row {
-    double emission_nm, excitation_nm, value, sigma;
-    SourcePosition position;
+    PlacedWavelength emission, excitation;
+    double value, sigma;
 };
 using Directions = std::tuple<double, double, double>; // theta_i, theta_o, phi in degrees
 using RowsByDirections = std::map<Directions, std::vector<Row>>;
@@ -44,6 +44,14 @@ void check_header_line(const TextReader& reader, std::string_view line, Bispectr
     require("orientation", "rows-emission");
     if (name == "anti-stokes")
         data.anti_stokes_allowed = value == "allowed";
+}
+
+/// Cells with commas between them: a spreadsheet may have quoted them or taken semicolons.
+std::string joined(const std::vector<TextToken>& cells) {
+    std::string line;
+    for (const TextToken& cell : cells)
+        line.append(line.empty() ? "" : ",").append(cell.text);
+    return line;
 }
 
 double angle(const TextReader& reader, const TextToken& token, double below) {
@@ -72,24 +80,28 @@ void read_row(const TextReader& reader, const std::vector<TextToken>& tokens,
     const Directions at{angle(reader, tokens[0], 90.0), angle(reader, tokens[1], 90.0),
                         angle(reader, tokens[2], 360.0)};
     const auto number = [&](const TextToken& token) {
-        return token.text == "nan" ? nan_value : reader.number(token);
+        return is_gap(token.text) ? nan_value : reader.number(token);
+    };
+    const auto wavelength = [&](const TextToken& token) {
+        return PlacedWavelength{reader.wavelength_nm(token), reader.position(token),
+                                half_last_digit(token.text)};
     };
     const double sigma = number(tokens[6]);
-    rows[at].push_back({reader.wavelength_nm(tokens[4]), reader.wavelength_nm(tokens[3]),
+    rows[at].push_back({wavelength(tokens[4]), wavelength(tokens[3]),
                         std::numbers::pi * number(tokens[5]),
-                        sigma > 0.0 ? std::numbers::pi * sigma : nan_value,
-                        reader.position(tokens[3])});
+                        sigma > 0.0 ? std::numbers::pi * sigma : nan_value});
 }
 
 /// The wavelengths that occur, each with its first place.
-WavelengthGrid grid_of(const RowsByDirections& rows, double Row::*wavelength, const char* name) {
-    std::map<double, SourcePosition> seen;
+WavelengthGrid grid_of(const RowsByDirections& rows, PlacedWavelength Row::*wavelength,
+                       const char* name) {
+    std::map<double, PlacedWavelength> seen;
     for (const auto& [at, list] : rows)
         for (const Row& row : list)
-            seen.emplace(row.*wavelength, row.position);
+            seen.emplace((row.*wavelength).nm, row.*wavelength);
     std::vector<PlacedWavelength> axis;
-    for (const auto& [nm, position] : seen)
-        axis.push_back({nm, position});
+    for (const auto& [nm, placed] : seen)
+        axis.push_back(placed);
     return axis_grid(axis, name, 1.0);
 }
 
@@ -101,12 +113,12 @@ BispectralBlock block_of(const Directions& at, const std::vector<Row>& rows,
     block.sigma = block.value;
     Eigen::MatrixXi seen = Eigen::MatrixXi::Zero(block.value.rows(), block.value.cols());
     for (const Row& row : rows) {
-        const int o = data.emission.band_of(row.emission_nm);
-        const int i = data.excitation.band_of(row.excitation_nm);
+        const int o = data.emission.band_of(row.emission.nm);
+        const int i = data.excitation.band_of(row.excitation.nm);
         if (seen(o, i)++ > 0)
-            throw_input_error(row.position,
+            throw_input_error(row.excitation.position,
                               fmt::format("excitation {} nm, emission {} nm is given twice",
-                                          row.excitation_nm, row.emission_nm),
+                                          row.excitation.nm, row.emission.nm),
                               "keep one of the two lines");
         block.value(o, i) = row.value;
         block.sigma(o, i) = row.sigma;
@@ -123,23 +135,24 @@ BispectralData read_measurement_blocks(const std::filesystem::path& file) {
     bool past_headings = false;
     for (std::string_view line; reader.next_line(line);) {
         line = trimmed(line);
+        const std::vector<TextToken> cells = reader.split_cells(line);
         if (line.starts_with('#'))
             check_header_line(reader, line, data);
         else if (line.empty())
             continue;
         else if (past_headings)
-            read_row(reader, reader.split_at_commas(line), rows);
-        else if (line == headings)
+            read_row(reader, cells, rows);
+        else if (joined(cells) == headings)
             past_headings = true;
         else
             throw_input_error(reader.position(reader.line_number(), 1),
                               "these headings are not known", fmt::format("write {}", headings));
     }
     if (rows.empty())
-        throw_input_error(reader.position(std::max(1, reader.line_number()), 1),
-                          "no diffuse rows to fit", "measure directions off the mirror");
-    data.emission = grid_of(rows, &Row::emission_nm, "emission");
-    data.excitation = grid_of(rows, &Row::excitation_nm, "excitation");
+        throw_input_error(reader.end_position(), "no diffuse rows to fit",
+                          "measure directions off the mirror");
+    data.emission = grid_of(rows, &Row::emission, "emission");
+    data.excitation = grid_of(rows, &Row::excitation, "excitation");
     for (const auto& [at, list] : rows)
         data.blocks.push_back(block_of(at, list, data));
     return data;

@@ -1,5 +1,6 @@
 #include "host/scene/mitsuba_document.h"
 
+#include "host/plain_text.h"
 #include "host/scene/load_state.h"
 
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ bool is_name_character(char c) {
 } // namespace
 
 MitsubaDocument::MitsubaDocument(const std::filesystem::path& file) : file_(file) {
-    const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
+    const std::string text = plain_text(read_file(file, {file.string()}, MAX_TOML_BYTES));
     for (std::size_t i = 0; i < text.size(); ++i)
         if (text[i] == '\n')
             line_starts_.push_back(static_cast<std::ptrdiff_t>(i) + 1);

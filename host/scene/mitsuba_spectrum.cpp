@@ -1,7 +1,7 @@
 #include "host/scene/mitsuba_scene.h"
 #include "host/scene/toml_document.h"
 #include "host/spectral/colour.h"
-#include "host/spectral/text_reader.h"
+#include "host/spectral/spectrum_formats.h"
 
 #include <fmt/format.h>
 
@@ -173,7 +173,7 @@ toml::table spectrum_file(const pugi::xml_node& element, const MitsubaScene& sce
     std::string name = scene.file_name(element, given);
     if (beyond == Beyond::EndValues)
         return toml::table{{"file", std::move(name)}};
-    NumberTable table = read_number_table(scene.document().file().parent_path() / given, 2);
+    NumberTable table = read_spectrum_table(scene.document().file().parent_path() / given);
     return samples_of({std::move(table.columns[0]), std::move(table.columns[1])}, beyond);
 }
 

@@ -3,6 +3,7 @@
 #include "host/scene/textured_value.h"
 #include "host/spectral/colour.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/wavelength_unit.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -77,6 +78,7 @@ Spectrum read_table(const TableReader& reader) {
             throw_input_error(position_of(reader.file(), nodes[i], reader.position_of_key("nm")),
                               fmt::format("nm[{}] = {} does not follow {}", i, nm[i], nm[i - 1]),
                               "wavelengths must ascend, each once");
+    require_plausible_range(nm.front(), nm.back(), UnitSource::Fixed, reader.position_of_key("nm"));
     return Spectrum::table(nm, value);
 }
 
@@ -191,7 +193,11 @@ void check_limits(const Spectrum& spectrum, const SourcePosition& at, const std:
                                       limits.low_is_allowed ? "at least" : "above", limits.low));
     if (!(high <= limits.high + rounding))
         throw_input_error(at, fmt::format("{} goes up to {}", name, high),
-                          fmt::format("it must be at most {}", limits.high));
+                          fmt::format("it must be at most {}{}", limits.high,
+                                      limits.high == 1.0 && high > 1.5
+                                          ? "; divide percent by 100, or head its column of a file "
+                                            "with %"
+                                          : ""));
 }
 
 } // namespace

@@ -3,7 +3,7 @@
 #include "host/paths.h"
 #include "host/scene/spectrum_reader.h"
 #include "host/scene/textured_value.h"
-#include "host/spectral/text_reader.h"
+#include "host/spectral/number_table.h"
 
 #include <algorithm>
 

@@ -1,5 +1,7 @@
 #include "host/scene/toml_document.h"
 
+#include "host/plain_text.h"
+
 #include <fmt/format.h>
 
 namespace reradiant {
@@ -92,7 +94,8 @@ void place_keys(toml::table& table, const SourcePosition& position) {
     table = std::move(placed);
 }
 
-toml::table parse_toml(const std::string& file, std::string_view text) {
+toml::table parse_toml(const std::string& file, std::string_view bytes) {
+    const std::string text = plain_text(bytes);
     refuse_deep_keys(file, text);
     try {
         return toml::parse(text, file);

@@ -2,8 +2,8 @@
 
 #include "host/paths.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/number_table.h"
 #include "host/spectral/quadrature.h"
-#include "host/spectral/text_reader.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

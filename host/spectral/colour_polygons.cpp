@@ -105,7 +105,7 @@ std::vector<ColourPolygon> read_colour_polygons(const std::filesystem::path& fil
         if (trimmed(line).empty() || trimmed(line).starts_with('#'))
             continue;
         if (past_headings)
-            polygons.push_back(read_polygon(reader, reader.split_at_commas(line)));
+            polygons.push_back(read_polygon(reader, reader.split_cells(line)));
         else if (trimmed(line) == headings)
             past_headings = true;
         else
@@ -113,8 +113,8 @@ std::vector<ColourPolygon> read_colour_polygons(const std::filesystem::path& fil
                               "these headings are not known", fmt::format("write {}", headings));
     }
     if (polygons.empty())
-        throw_input_error(reader.position(std::max(1, reader.line_number()), 1),
-                          "no polygon in this file", fmt::format("write {}", headings));
+        throw_input_error(reader.end_position(), "no polygon in this file",
+                          fmt::format("write {}", headings));
     return polygons;
 }
 

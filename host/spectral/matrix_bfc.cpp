@@ -22,7 +22,7 @@ constexpr double same_nm = 1e-6;
 
 class BfcReader {
 public:
-    explicit BfcReader(const std::filesystem::path& file) : reader_(file) {}
+    explicit BfcReader(const std::filesystem::path& file) : reader_(file, TextFormat::Bfc) {}
 
     ReradiationMatrix read() {
         if (const auto tokens = next(); tokens[0].text != "VEC_01")
@@ -49,8 +49,8 @@ private:
             if (auto tokens = reader_.split_at_blanks(line); !tokens.empty())
                 return tokens;
         }
-        throw_input_error(reader_.position(std::max(1, reader_.line_number()), 1),
-                          "the file ends before its matrix does", "its last line is EOD");
+        throw_input_error(reader_.end_position(), "the file ends before its matrix does",
+                          "its last line is EOD");
     }
 
     void require_fields(const std::vector<TextToken>& tokens, std::size_t count,

@@ -1,104 +1,20 @@
 #include "host/atomic_file.h"
+#include "host/spectral/matrix_csv_header.h"
 #include "host/spectral/matrix_formats.h"
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/text_reader.h"
+#include "host/spectral/wavelength_unit.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <optional>
 #include <utility>
 
 namespace reradiant {
 
 namespace {
-
-/// What the '#' lines say. Quantity and orientation are never guessed.
-struct CsvHeader {
-    std::optional<MatrixQuantity> quantity;
-    std::optional<bool> rows_are_emission;
-    std::optional<MatrixKind> kind;
-    std::optional<bool> anti_stokes_allowed;
-    std::optional<std::string> geometry;
-    std::optional<double> emission_step_nm, excitation_step_nm; ///< for an axis of one band
-};
-
-std::string_view first_word(std::string_view text) {
-    return text.substr(0, std::min(text.find_first_of(" \t"), text.size()));
-}
-
-template <typename Value>
-void set_once(const TextReader& reader, const TextToken& key, std::optional<Value>& field,
-              const Value& value) {
-    if (field)
-        throw_input_error(reader.position(key), fmt::format("'{}' is given twice", key.text),
-                          "keep one of the two lines");
-    field = value;
-}
-
-/// One of two words, or an input Error.
-bool is_first_of(const TextReader& reader, const TextToken& value, std::string_view first,
-                 std::string_view second) {
-    const std::string_view word = first_word(value.text);
-    if (word != first && word != second)
-        throw_input_error(reader.position(value), fmt::format("'{}' is not known here", word),
-                          fmt::format("write {} or {}", first, second));
-    return word == first;
-}
-
-double step_value(const TextReader& reader, TextToken value) {
-    value.text = first_word(value.text);
-    return reader.wavelength_nm(value);
-}
-
-void read_header_line(const TextReader& reader, std::string_view line, CsvHeader& header) {
-    const auto colon = line.find(':');
-    if (colon == std::string_view::npos)
-        return;
-    const auto hash = line.find('#');
-    const std::string_view name = trimmed(line.substr(hash + 1, colon - hash - 1));
-    const std::string_view rest = trimmed(line.substr(colon + 1));
-    const auto column_of = [&](std::string_view part) {
-        return part.empty() ? static_cast<int>(colon) + 2
-                            : static_cast<int>(part.data() - line.data()) + 1;
-    };
-    const TextToken key{name, reader.line_number(), column_of(name)};
-    const TextToken value{rest, reader.line_number(), column_of(rest)};
-    if (name == "quantity")
-        set_once(reader, key, header.quantity,
-                 is_first_of(reader, value, "per-band", "density-per-nm")
-                     ? MatrixQuantity::PerBand
-                     : MatrixQuantity::DensityPerNm);
-    else if (name == "orientation")
-        set_once(reader, key, header.rows_are_emission,
-                 is_first_of(reader, value, "rows-emission", "rows-excitation"));
-    else if (name == "kind")
-        set_once(reader, key, header.kind,
-                 is_first_of(reader, value, "model", "measured") ? MatrixKind::Model
-                                                                 : MatrixKind::Measured);
-    else if (name == "anti-stokes")
-        set_once(reader, key, header.anti_stokes_allowed,
-                 is_first_of(reader, value, "allowed", "refused"));
-    else if (name == "geometry")
-        set_once(reader, key, header.geometry, std::string(rest));
-    else if (name == "emission-step-nm")
-        set_once(reader, key, header.emission_step_nm, step_value(reader, value));
-    else if (name == "excitation-step-nm")
-        set_once(reader, key, header.excitation_step_nm, step_value(reader, value));
-}
-
-void require_declared(const TextReader& reader, const CsvHeader& header) {
-    const SourcePosition position = reader.position(std::max(1, reader.line_number()), 1);
-    if (!header.quantity)
-        throw_input_error(position, "the quantity is not declared",
-                          "add the line '# quantity: per-band' or '# quantity: density-per-nm'");
-    if (!header.rows_are_emission)
-        throw_input_error(
-            position, "the orientation is not declared",
-            "add the line '# orientation: rows-emission' or '# orientation: rows-excitation'");
-}
 
 /// Both axes and the values, rows = emission, in the file's quantity.
 struct CsvBody {
@@ -106,96 +22,137 @@ struct CsvBody {
     Eigen::MatrixXd values;
 };
 
-std::vector<PlacedWavelength> heading_wavelengths(const TextReader& reader,
-                                                  const std::vector<TextToken>& tokens) {
-    if (tokens.size() < 2)
-        throw_input_error(reader.position(tokens[0]), "no wavelengths in the line of headings",
+/// Reads the cells of a line, and what stands in them.
+class CellReader {
+public:
+    CellReader(TextReader& reader, const WavelengthUnit& unit, Gaps gaps)
+        : reader_(reader), unit_(unit), gaps_(gaps) {}
+
+    /// Cells of the next line that has any, comments skipped; empty behind the last. Spreadsheets
+    /// fill lines up with empty cells: those beyond `most` are dropped.
+    std::vector<TextToken> next(std::size_t most) {
+        for (std::string_view line; reader_.next_line(line);) {
+            if (trimmed(line).starts_with('#'))
+                continue;
+            std::vector<TextToken> cells = reader_.split_cells(line);
+            const bool has_any = std::any_of(cells.begin(), cells.end(), [](const TextToken& cell) {
+                return !cell.text.empty();
+            });
+            while (cells.size() > most && cells.back().text.empty())
+                cells.pop_back();
+            if (has_any)
+                return cells;
+        }
+        return {};
+    }
+
+    PlacedWavelength wavelength(const TextToken& cell) const {
+        const double factor = cell.text.ends_with("nm") ? 1.0 : unit_.factor;
+        return {factor * reader_.wavelength_nm(cell), reader_.position(cell),
+                factor * half_last_digit(cell.text)};
+    }
+
+    double value(const TextToken& cell) const {
+        if (gaps_ == Gaps::BecomeNan && is_gap(cell.text))
+            return std::numeric_limits<double>::quiet_NaN();
+        return reader_.number(cell);
+    }
+
+    const TextReader& reader() const { return reader_; }
+
+private:
+    TextReader& reader_;
+    WavelengthUnit unit_;
+    Gaps gaps_;
+};
+
+/// The table with its rows and columns in the order of wavelengths, rows = emission.
+CsvBody sorted_body(std::vector<PlacedWavelength> rows, std::vector<PlacedWavelength> columns,
+                    const Eigen::MatrixXd& table, bool rows_are_emission) {
+    const std::vector<int> row_order =
+        sort_axis(rows, rows_are_emission ? "emission" : "excitation");
+    const std::vector<int> column_order =
+        sort_axis(columns, rows_are_emission ? "excitation" : "emission");
+    const Eigen::MatrixXd sorted = table(row_order, column_order);
+    if (rows_are_emission)
+        return {std::move(rows), std::move(columns), sorted};
+    return {std::move(columns), std::move(rows), sorted.transpose()};
+}
+
+CsvBody read_wide(CellReader& cells, std::vector<TextToken> headings, bool rows_are_emission) {
+    const TextReader& reader = cells.reader();
+    while (headings.size() > 1 && headings.back().text.empty())
+        headings.pop_back();
+    if (headings.size() < 2)
+        throw_input_error(reader.position(headings[0]), "no wavelengths in the line of headings",
                           "write 'nm,300,310,...'");
-    std::vector<PlacedWavelength> axis;
-    for (std::size_t k = 1; k < tokens.size(); ++k)
-        axis.push_back({reader.wavelength_nm(tokens[k]), reader.position(tokens[k])});
-    return axis;
-}
-
-double entry_value(const TextReader& reader, const TextToken& token, Gaps gaps) {
-    if (gaps == Gaps::BecomeNan && token.text == "nan")
-        return std::numeric_limits<double>::quiet_NaN();
-    return reader.number(token);
-}
-
-CsvBody read_wide(TextReader& reader, const std::vector<TextToken>& headings,
-                  bool rows_are_emission, Gaps gaps) {
-    const std::vector<PlacedWavelength> columns = heading_wavelengths(reader, headings);
-    std::vector<PlacedWavelength> rows;
+    std::vector<PlacedWavelength> columns, rows;
+    for (std::size_t k = 1; k < headings.size(); ++k)
+        columns.push_back(cells.wavelength(headings[k]));
     std::vector<double> values;
-    for (std::string_view line; reader.next_line(line);) {
-        if (trimmed(line).empty() || trimmed(line).starts_with('#'))
-            continue;
-        const std::vector<TextToken> tokens = reader.split_at_commas(line);
+    for (auto tokens = cells.next(headings.size()); !tokens.empty();
+         tokens = cells.next(headings.size())) {
         if (tokens.size() != headings.size())
             throw_input_error(reader.position(tokens.back()),
                               fmt::format("{} values in this row", tokens.size() - 1),
                               fmt::format("the headings name {}", columns.size()));
-        rows.push_back({reader.wavelength_nm(tokens[0]), reader.position(tokens[0])});
+        rows.push_back(cells.wavelength(tokens[0]));
         require_matrix_size(rows.back().position, rows.size(), columns.size());
         for (std::size_t k = 1; k < tokens.size(); ++k)
-            values.push_back(entry_value(reader, tokens[k], gaps));
+            values.push_back(cells.value(tokens[k]));
     }
     if (rows.empty())
-        throw_input_error(reader.position(reader.line_number(), 1), "no rows after the headings",
+        throw_input_error(reader.end_position(), "no rows after the headings",
                           "every row holds a wavelength and its values");
     const Eigen::MatrixXd table =
         Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
             values.data(), static_cast<Eigen::Index>(rows.size()),
             static_cast<Eigen::Index>(columns.size()));
-    if (rows_are_emission)
-        return {rows, columns, table};
-    return {columns, rows, table.transpose()};
+    return sorted_body(std::move(rows), std::move(columns), table, rows_are_emission);
 }
 
 struct LongEntry {
     double value;
-    SourcePosition position;
+    PlacedWavelength emission, excitation;
 };
 using LongEntries = std::map<std::pair<double, double>, LongEntry>; // (emission, excitation)
 
-LongEntries read_long_entries(TextReader& reader, Gaps gaps) {
+LongEntries read_long_entries(CellReader& cells) {
+    const TextReader& reader = cells.reader();
     LongEntries entries;
-    for (std::string_view line; reader.next_line(line);) {
-        if (trimmed(line).empty() || trimmed(line).starts_with('#'))
-            continue;
-        const std::vector<TextToken> tokens = reader.split_at_commas(line);
+    for (auto tokens = cells.next(3); !tokens.empty(); tokens = cells.next(3)) {
         if (tokens.size() != 3)
             throw_input_error(reader.position(tokens.back()),
                               fmt::format("{} values in this line", tokens.size()),
                               "write excitation_nm,emission_nm,value");
-        const std::pair key{reader.wavelength_nm(tokens[1]), reader.wavelength_nm(tokens[0])};
-        const LongEntry entry{entry_value(reader, tokens[2], gaps), reader.position(tokens[0])};
-        if (!entries.emplace(key, entry).second)
-            throw_input_error(entry.position,
+        const LongEntry entry{cells.value(tokens[2]), cells.wavelength(tokens[1]),
+                              cells.wavelength(tokens[0])};
+        if (!entries.emplace(std::pair{entry.emission.nm, entry.excitation.nm}, entry).second)
+            throw_input_error(entry.excitation.position,
                               fmt::format("excitation {} nm, emission {} nm is given twice",
-                                          key.second, key.first),
+                                          entry.excitation.nm, entry.emission.nm),
                               "keep one of the two lines");
-        require_matrix_size(entry.position, entries.size(), 1);
+        require_matrix_size(entry.excitation.position, entries.size(), 1);
     }
     if (entries.empty())
-        throw_input_error(reader.position(reader.line_number(), 1), "no values after the headings",
+        throw_input_error(reader.end_position(), "no values after the headings",
                           "every line holds excitation_nm,emission_nm,value");
     return entries;
 }
 
-CsvBody read_long(TextReader& reader, Gaps gaps) {
-    const LongEntries entries = read_long_entries(reader, gaps);
-    std::map<double, SourcePosition> emission, excitation;
+CsvBody read_long(CellReader& cells, Gaps gaps) {
+    const LongEntries entries = read_long_entries(cells);
+    const TextReader& reader = cells.reader();
+    std::map<double, PlacedWavelength> emission, excitation;
     for (const auto& [key, entry] : entries) {
-        emission.emplace(key.first, entry.position);
-        excitation.emplace(key.second, entry.position);
+        emission.emplace(key.first, entry.emission);
+        excitation.emplace(key.second, entry.excitation);
     }
     CsvBody body;
-    for (const auto& [nm, position] : emission)
-        body.emission.push_back({nm, position});
-    for (const auto& [nm, position] : excitation)
-        body.excitation.push_back({nm, position});
+    for (const auto& [nm, placed] : emission)
+        body.emission.push_back(placed);
+    for (const auto& [nm, placed] : excitation)
+        body.excitation.push_back(placed);
     require_matrix_size(reader.position(1, 1), emission.size(), excitation.size());
     body.values.setZero(static_cast<Eigen::Index>(emission.size()),
                         static_cast<Eigen::Index>(excitation.size()));
@@ -234,9 +191,24 @@ ReradiationMatrix assemble(const CsvHeader& header, CsvBody body) {
     matrix.kind = header.kind.value_or(MatrixKind::Model);
     matrix.anti_stokes_allowed = header.anti_stokes_allowed.value_or(false);
     matrix.geometry = header.geometry.value_or("");
+    if (header.is_percent.value_or(false))
+        matrix.values /= 100.0;
     if (*header.quantity == MatrixQuantity::DensityPerNm)
         scale_off_diagonal(matrix, matrix.excitation.step_nm);
     return matrix;
+}
+
+/// Unit of both axes of the wide form, by the heading of its first column.
+WavelengthUnit axis_unit(const TextReader& reader, const TextToken& heading) {
+    const auto unit = stated_wavelength_unit(heading.text);
+    if (!unit && !names_wavelengths(heading.text))
+        throw_input_error(reader.position(heading), "the line of headings is missing",
+                          "begin it with 'nm,' or write excitation_nm,emission_nm,value");
+    if (unit && unit->reciprocal)
+        throw_input_error(reader.position(heading),
+                          fmt::format("bands in {} are not equally spaced in nm", unit->name),
+                          "resample the matrix to equal steps of wavelength");
+    return unit.value_or(WavelengthUnit{});
 }
 
 std::string header_text(const ReradiationMatrix& matrix, const MatrixCsvForm& form) {
@@ -268,27 +240,25 @@ ReradiationMatrix read_matrix_csv(const std::filesystem::path& file, Gaps gaps) 
         if (trimmed(line).empty())
             continue;
         if (trimmed(line).starts_with('#')) {
-            read_header_line(reader, line, header);
+            read_csv_header_line(reader, line, header);
             continue;
         }
         require_declared(reader, header);
-        const std::vector<TextToken> headings = reader.split_at_commas(line);
+        const std::vector<TextToken> headings = reader.split_cells(line);
         const bool is_long = headings[0].text == "excitation_nm";
         if (is_long && (headings.size() != 3 || headings[1].text != "emission_nm" ||
                         headings[2].text != "value"))
             throw_input_error(reader.position(headings[0]), "these headings are not known",
                               "write excitation_nm,emission_nm,value");
-        if (!is_long && headings[0].text != "nm")
-            throw_input_error(reader.position(headings[0]), "the line of headings is missing",
-                              "begin it with 'nm,' or write excitation_nm,emission_nm,value");
-        const ReradiationMatrix matrix = assemble(
-            header, is_long ? read_long(reader, gaps)
-                            : read_wide(reader, headings, *header.rows_are_emission, gaps));
+        CellReader cells(reader, is_long ? WavelengthUnit{} : axis_unit(reader, headings[0]), gaps);
+        const ReradiationMatrix matrix =
+            assemble(header, is_long ? read_long(cells, gaps)
+                                     : read_wide(cells, headings, *header.rows_are_emission));
         refuse_undeclared_anti_stokes(matrix, reader.position(headings[0]));
         return matrix;
     }
-    throw_input_error(reader.position(std::max(1, reader.line_number()), 1),
-                      "no matrix in this file", "see 'Re-radiation CSV' in the README");
+    throw_input_error(reader.end_position(), "no matrix in this file",
+                      "see 'Re-radiation CSV' in the README");
 }
 
 void write_reradiation_csv(const std::filesystem::path& file, const ReradiationMatrix& matrix,

@@ -4,6 +4,7 @@
 #include "host/spectral/matrix_io.h"
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace reradiant {
@@ -12,10 +13,19 @@ namespace reradiant {
 struct PlacedWavelength {
     double nm = 0.0;
     SourcePosition position;
+    double rounding_nm = 0.0; ///< half the last digit that the file writes
 };
 
-/// Grid of an axis as read; input Error at the first wavelength that does not ascend in equal
-/// steps. `step_of_single_nm` is the width of an axis of one band.
+/// Half of one in the last digit of a number as it is written: 0.005 for "383.33".
+double half_last_digit(std::string_view number);
+
+/// Sorts an axis by wavelength and returns the order that its values must be taken in; input Error
+/// at a wavelength that is given twice.
+std::vector<int> sort_axis(std::vector<PlacedWavelength>& axis, const char* axis_name);
+
+/// Grid of a sorted axis; input Error at the first wavelength that does not ascend in steps that
+/// are equal within its rounding (the finest of the axis). `step_of_single_nm` is the width of an
+/// axis of one band.
 WavelengthGrid axis_grid(const std::vector<PlacedWavelength>& axis, const char* axis_name,
                          double step_of_single_nm);
 

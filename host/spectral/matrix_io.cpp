@@ -1,11 +1,11 @@
 #include "host/spectral/matrix_io.h"
 
 #include "host/spectral/matrix_formats.h"
+#include "host/spectral/plausible_matrix.h"
 #include "host/spectral/text_reader.h"
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <stdexcept>
 
 namespace reradiant {
@@ -21,15 +21,6 @@ constexpr std::size_t most_entries = std::size_t{1} << 22;
         "use .csv, .bfc or .exr");
 }
 
-/// The entry that breaks equal steps, seen from the first step.
-std::size_t first_uneven(const std::vector<PlacedWavelength>& axis) {
-    const double step_nm = axis[1].nm - axis[0].nm;
-    for (std::size_t k = 2; k < axis.size(); ++k)
-        if (std::abs(axis[k].nm - axis[0].nm - static_cast<double>(k) * step_nm) > 1e-6 * step_nm)
-            return k;
-    return axis.size() - 1;
-}
-
 } // namespace
 
 std::string lower_case_ending(const std::filesystem::path& file) {
@@ -38,27 +29,6 @@ std::string lower_case_ending(const std::filesystem::path& file) {
         if (letter >= 'A' && letter <= 'Z')
             letter = static_cast<char>(letter - 'A' + 'a');
     return ending;
-}
-
-WavelengthGrid axis_grid(const std::vector<PlacedWavelength>& axis, const char* axis_name,
-                         double step_of_single_nm) {
-    std::vector<double> centres_nm;
-    for (const PlacedWavelength& wavelength : axis) {
-        if (!centres_nm.empty() && !(wavelength.nm > centres_nm.back()))
-            throw_input_error(
-                wavelength.position,
-                fmt::format("{} wavelength {} nm does not ascend", axis_name, wavelength.nm),
-                "sort the wavelengths and give each once");
-        centres_nm.push_back(wavelength.nm);
-    }
-    try {
-        return grid_from_centres(centres_nm, step_of_single_nm);
-    } catch (const std::invalid_argument& error) {
-        const std::size_t at = axis.size() > 2 ? first_uneven(axis) : 0;
-        throw_input_error(axis.empty() ? SourcePosition{} : axis[at].position,
-                          fmt::format("{} wavelengths: {}", axis_name, error.what()),
-                          "bands must be equally spaced");
-    }
 }
 
 void require_matrix_size(const SourcePosition& position, std::size_t rows, std::size_t columns) {
@@ -96,7 +66,7 @@ bool holds_reradiation(const std::filesystem::path& file) {
     const std::string ending = lower_case_ending(file);
     if (ending == ".bfc" || ending == ".exr")
         return true;
-    if (ending != ".csv")
+    if (text_format_of(file) != TextFormat::Table)
         return false;
     TextReader reader(file);
     for (std::string_view line; reader.next_line(line);) {
@@ -115,13 +85,17 @@ bool holds_reradiation(const std::filesystem::path& file) {
 
 ReradiationMatrix read_reradiation(const std::filesystem::path& file, Gaps gaps) {
     const std::string ending = lower_case_ending(file);
+    ReradiationMatrix matrix;
     if (ending == ".csv")
-        return read_matrix_csv(file, gaps);
-    if (ending == ".bfc")
-        return read_matrix_bfc(file);
-    if (ending == ".exr")
-        return read_matrix_exr(file);
-    refuse_ending(file);
+        matrix = read_matrix_csv(file, gaps);
+    else if (ending == ".bfc")
+        matrix = read_matrix_bfc(file);
+    else if (ending == ".exr")
+        matrix = read_matrix_exr(file);
+    else
+        refuse_ending(file);
+    require_plausible_matrix(matrix, file);
+    return matrix;
 }
 
 void write_reradiation(const std::filesystem::path& file, const ReradiationMatrix& matrix) {

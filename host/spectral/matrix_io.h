@@ -6,14 +6,16 @@
 
 namespace reradiant {
 
-/// What an entry that was not measured does: `nan`, or absent from the long form of a CSV.
+/// What an entry that was not measured does: `nan`, `NA`, `--`, an empty cell and so on (is_gap of
+/// text_reader.h), or absent from the long form of a CSV.
 enum class Gaps { Refused, BecomeNan };
 
 /// Reads a re-radiation matrix by its ending: .csv (INTERFACE, "Re-radiation CSV": wide or long
 /// form, per-band or density-per-nm, either orientation), .bfc (Labsphere BFC-450; kind =
 /// measured) or .exr (bispectral, Fichet, Pacanowski and Wilkie 2021). Values are converted to
-/// per-band form with rows = emission, but otherwise raw: nothing is repaired or checked for
-/// energy here. Throws an input Error with file, line and column.
+/// per-band form with rows = emission, axes ascending, but otherwise raw: nothing is repaired or
+/// checked for energy here. What cannot be in nm and unit 1 (plausible_matrix.h) is refused. Throws
+/// an input Error with file, line and column.
 ReradiationMatrix read_reradiation(const std::filesystem::path& file, Gaps gaps = Gaps::Refused);
 
 /// Writes by ending: .csv (wide, per-band, rows-emission), .bfc or .exr. Atomic: a temporary
@@ -31,12 +33,13 @@ void write_reradiation_csv(const std::filesystem::path& file, const ReradiationM
                            const MatrixCsvForm& form);
 
 /// True when a file holds a re-radiation matrix rather than a spectrum: .bfc, .exr, or a .csv
-/// whose first lines say so. Input Error when a .csv cannot be read.
+/// whose first lines say so. Input Error when a text cannot be read.
 bool holds_reradiation(const std::filesystem::path& file);
 /// Ending of a file name in small letters, with its dot.
 std::string lower_case_ending(const std::filesystem::path& file);
 
-/// Reads a spectrum from .spd (two columns) or .csv (nm,value; '#' comments, optional header).
+/// Reads a spectrum by what the file says it is, whatever its ending: JCAMP-DX, CGATS, IES TM-27
+/// (spectrum_formats.h), else a table of two columns (number_table.h).
 Spectrum read_spectrum(const std::filesystem::path& file);
 void write_spectrum(const std::filesystem::path& file, const std::vector<double>& wavelengths_nm,
                     const std::vector<double>& values);

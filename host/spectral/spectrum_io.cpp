@@ -1,6 +1,7 @@
 #include "host/atomic_file.h"
 #include "host/spectral/matrix_io.h"
-#include "host/spectral/text_reader.h"
+#include "host/spectral/spectrum_formats.h"
+#include "host/spectral/text_format.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +9,21 @@
 
 namespace reradiant {
 
+NumberTable read_spectrum_table(const std::filesystem::path& file) {
+    switch (text_format_of(file)) {
+    case TextFormat::JcampDx:
+        return read_jcamp(file);
+    case TextFormat::Cgats:
+        return read_cgats(file);
+    case TextFormat::Tm27:
+        return read_tm27(file);
+    default: // read_number_table refuses by name what is no table
+        return read_number_table(file, 2);
+    }
+}
+
 Spectrum read_spectrum(const std::filesystem::path& file) {
-    NumberTable table = read_number_table(file, 2);
+    NumberTable table = read_spectrum_table(file);
     return Spectrum::table(std::move(table.columns[0]), std::move(table.columns[1]));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/error.h"
+#include "host/spectral/text_format.h"
 
 #include <filesystem>
 #include <string>
@@ -16,27 +17,34 @@ struct TextToken {
     int column = 0;
 };
 
-/// A text file in memory, line by line, the same under any locale. Lines end with LF or CR LF; a
-/// byte order mark is skipped. Input Error when it cannot be read or is over 64 MiB.
+/// A text file in memory, line by line, the same under any locale. Lines end with LF, CR LF or CR
+/// alone; a byte order mark and a control-Z at the end are skipped.
 class TextReader {
 public:
-    explicit TextReader(const std::filesystem::path& file);
+    /// Input Error when the file cannot be read, is no text (see read_text_file), or says that it
+    /// is of another format than the one that is read here.
+    explicit TextReader(const std::filesystem::path& file, TextFormat expected = TextFormat::Table);
 
     /// Next line without its end; false after the last.
     bool next_line(std::string_view& line);
+    /// The line that next_line will give.
+    bool peek_line(std::string_view& line) const;
     int line_number() const { return line_; }
     SourcePosition position(const TextToken& token) const;
     SourcePosition position(int line, int column) const { return {name_, line, column}; }
+    /// For what is wrong with the file as a whole: its last line.
+    SourcePosition end_position() const { return {name_, line_ > 0 ? line_ : 1, 1}; }
     const std::string& name() const { return name_; }
 
-    /// Pieces of the current line between commas, blanks trimmed; an empty piece is kept.
-    std::vector<TextToken> split_at_commas(std::string_view line) const;
-    /// Pieces between any run of blanks, commas and semicolons.
+    /// Cells of the current line, blanks and quotation marks around them removed; an empty cell is
+    /// kept. The separator is the semicolon where the line has one, else the comma, else the tab.
+    std::vector<TextToken> split_cells(std::string_view line) const;
+    /// Pieces between any run of blanks, commas and semicolons; a quoted piece may hold them.
     std::vector<TextToken> split_at_blanks(std::string_view line) const;
     /// A finite number of magnitude at most 1e30 (single precision must hold products of two);
-    /// input Error with the token's place otherwise.
+    /// input Error with the token's place otherwise, which says so where a value is missing.
     double number(const TextToken& token) const;
-    /// A wavelength: a number above 0 and at most 1e6 nm.
+    /// A wavelength: a number above 0 and at most 1e6 nm, perhaps with "nm" behind it.
     double wavelength_nm(const TextToken& token) const;
 
 private:
@@ -46,17 +54,18 @@ private:
     int line_ = 0;
 };
 
+/// TextReader::number and TextReader::wavelength_nm for a text at a place.
+double number_at(std::string_view text, const SourcePosition& at);
+double wavelength_nm_at(std::string_view text, const SourcePosition& at);
+
 std::string_view trimmed(std::string_view text);
 /// True when the text is one number and nothing else.
 bool is_number(std::string_view text);
-
-/// Columns of numbers after optional '#' comments and one optional line of headings.
-struct NumberTable {
-    std::vector<std::vector<double>> columns;
-    std::vector<TextToken> first_column_places; ///< `text` is empty
-};
-/// Every row must hold exactly `column_count` numbers; at least one row, and a strictly ascending
-/// first column of wavelengths. Input Error with the place otherwise.
-NumberTable read_number_table(const std::filesystem::path& file, int column_count);
+/// True when the text begins as a number does: a digit, or one behind a sign or a point. No heading
+/// begins so.
+bool begins_as_number(std::string_view text);
+/// True for what programs write where nothing was measured: an empty cell, `nan`, `NA`, `--`,
+/// `null` and so on, in any case.
+bool is_gap(std::string_view text);
 
 } // namespace reradiant

@@ -50,6 +50,43 @@ TEST_F(DataTest, GapsBecomeNan) {
     EXPECT_EQ(data.measured_count(), 3);
 }
 
+TEST_F(DataTest, GapsOfEveryProgramBecomeNan) {
+    const char* words[] = {"NaN", "NAN", "nan",  "NA",   "N/A",  "n/a",    "#N/A", "--",    "-",
+                           "",    " ",   "null", "None", "<NA>", "\"NA\"", "\"\"", "masked"};
+    for (const std::string gap : words) {
+        const BispectralData wide = read(header + "nm,400,410\n400,0.5," + gap + "\n410,0.1,0.5\n");
+        EXPECT_TRUE(std::isnan(wide.blocks[0].value(0, 1))) << gap;
+        EXPECT_EQ(wide.measured_count(), 3) << gap;
+        const BispectralData list = read(header +
+                                         "excitation_nm,emission_nm,value\n400,400,0.5\n"
+                                         "400,410,0.1\n410,410," +
+                                         gap + "\n");
+        EXPECT_EQ(list.measured_count(), 2) << gap;
+        const BispectralData measured = read(measure_headings + "45,0,0,400,400,0.1," + gap +
+                                             ",diffuse\n45,0,0,400,410," + gap + ",0.1,diffuse\n");
+        EXPECT_TRUE(std::isnan(measured.blocks[0].sigma(0, 0))) << gap;
+        EXPECT_TRUE(std::isnan(measured.blocks[0].value(1, 0))) << gap;
+    }
+    expect_refused(header + "nm,400,410\n400,0.5,?\n410,0.1,0.5\n", "6:9", "'?'");
+    expect_refused(header + "nm,400,410\n400,0.5,inf\n410,0.1,0.5\n", "6:9", "inf");
+    expect_refused(header + "nm,400,410\nNA,0.5,0\n410,0.1,0.5\n", "6:1", "missing");
+    expect_refused(header + "nm,400,410\n400,0.5\n410,0.1,0.5\n", "6:", "1 values");
+}
+
+TEST_F(DataTest, AxesInAnyOrderAndRoundedAreOneGrid) {
+    const BispectralData sorted =
+        read(header + "nm,300,390\n390,0.1,0.5\n386.67,0.2,0\n383.33,0.3,NA\n380,0.4,0\n");
+    EXPECT_EQ(sorted.emission, (WavelengthGrid{380.0, 10.0 / 3.0, 4}));
+    EXPECT_EQ(sorted.blocks[0].value(3, 1), 0.5);
+    EXPECT_TRUE(std::isnan(sorted.blocks[0].value(1, 1)));
+    const BispectralData measured =
+        read(measure_headings + "45,0,0,300,390,0.1,0,diffuse\n45,0,0,300,386.67,0.2,0,diffuse\n"
+                                "45,0,0,300,383.33,0.3,0,diffuse\n45,0,0,300,380,0.4,0,diffuse\n");
+    EXPECT_EQ(measured.emission, sorted.emission);
+    EXPECT_EQ(measured.measured_count(), 4);
+    EXPECT_NEAR(measured.blocks[0].value(0, 0), 0.4 * 3.14159265358979, 1e-12);
+}
+
 TEST_F(DataTest, MeasurementsBecomeBlocksOfRadianceFactors) {
     const BispectralData data = read("# kind: measured\n" + measure_headings +
                                      "45,0,0,400,400,0.1,0.01,diffuse\n"
@@ -85,8 +122,11 @@ TEST_F(DataTest, BadInputIsRefusedAtItsPlace) {
     expect_refused(header + "# quantity: density-per-nm\nnm,400\n400,0.1\n", "5:", "quantity");
     expect_refused(header + "nm,400,410\n400,0.1\n", "6:", "");
     expect_refused(header + "nm,400,400\n400,0.1,0.1\n", "5:8", "400");
-    expect_refused(header + "nm,400,410\n400,50,0\n410,3,60\n", "7:7", "percent");
+    expect_refused(header + "nm,400,410\n400,50,0\n410,3,60\n", "6:5", "percent");
     expect_refused(header + "nm,0.4,0.41\n0.4,0.1,0\n0.41,0,0.1\n", "1:1", "nm");
+    expect_refused(measure_headings + "45,0,0,400,400,0.1,0,diffuse\n45,0,0,400,410,30,0,diffuse\n",
+                   "3:16", "percent");
+    expect_refused("##TITLE= x\n", "1:1", "JCAMP-DX");
     expect_refused(header + "nm,400\n400,nan\n", "1:1", "no entry was measured");
     expect_refused("# quantity: density-per-nm\n" + measure_headings, "1:12", "contradicts");
     expect_refused(measure_headings +

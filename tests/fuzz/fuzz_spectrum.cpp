@@ -1,8 +1,8 @@
 #include "host/spectral/matrix_io.h"
-#include "host/spectral/text_reader.h"
-#include "tests/fuzz/fuzz_input.h"
+#include "tests/fuzz/check_spectrum.h"
 
-// Two columns (.spd and the CSV of spectra), and three as metals and observers have them.
+// A spectrum of any format that the file says it is of; two columns (.spd and the CSV of spectra),
+// and three as metals and observers have them.
 
 using namespace reradiant;
 
@@ -14,9 +14,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
             fuzz::require_finite(spectrum(nm), "spectrum");
         fuzz::require_finite(spectrum.average(300.0, 780.0), "mean of a spectrum");
     });
-    fuzz::read_or_refuse([&] {
-        for (const auto& column : read_number_table(file, 3).columns)
-            fuzz::require_all_finite(column, "column");
-    });
+    fuzz::read_or_refuse([&] { fuzz::check_spectrum(read_spectrum_table(file)); });
+    fuzz::read_or_refuse([&] { fuzz::check_spectrum(read_number_table(file, 3)); });
     return 0;
 }

@@ -22,6 +22,10 @@ def nested(depth):
     return value
 
 
+class NAType:
+    """Stands for the type of pandas.NA, which the module knows by its name."""
+
+
 class BadInput(unittest.TestCase):
     def test_numpy_of_another_interface(self):
         # Without the check the interpreter dies: seen with pybind11 2.10 and numpy 2.4.
@@ -144,6 +148,92 @@ class BadInput(unittest.TestCase):
         self.refused(["1.5"], too_much.repaired)
         self.refused(["rank"], too_much.factorise, 5)
 
+    def test_missing_entries_of_what_is_whole(self):
+        masked = np.ma.masked_array([0.1, 0.9], mask=[False, True])
+        for value in (masked, [0.1, None], [0.1, np.ma.masked], (0.1, NAType())):
+            with self.subTest(value=value):
+                self.refused(["value", "[1]", "give every number"], rr.Spectrum, [400, 500], value)
+                self.refused(["['value']", "[1]" if isinstance(value, np.ndarray) else "value"],
+                             rr.render, material_scene({"substrate": {
+                                 "type": "lambert",
+                                 "reflectance": {"nm": [400, 500], "value": value}}}))
+        self.refused(["nm", "masked at [1]"], rr.Spectrum, np.ma.masked_equal([400, 500], 500),
+                     [0, 1])
+        self.refused(["nm", "masked"], rr.Spectrum.constant(1).at, np.ma.masked)
+        self.refused(["nm", "masked at [1]"], rr.Spectrum.constant(1), masked)
+        self.refused(["values", "masked at [0, 0]"], rr.Reradiation,
+                     [np.ma.masked_array([1.0, 0], [True, False]), [0, 1]], [400, 500], [400, 500])
+        self.refused(["emission_nm", "masked"], rr.Reradiation, np.eye(2) / 2,
+                     np.ma.masked_equal([400, 500], 500), [400, 500], measured=True)
+        self.refused(["values", "masked"], rr.Image,
+                     np.ma.masked_array(np.ones((1, 1, 2), np.float32), [[[0, 1]]]), [400, 500])
+        glass = rr.Stack([{"ior": 1.5}])
+        self.refused(["theta_deg", "masked"], glass.transmission, masked, 500)
+        self.refused(["theta_i", "masked"], rr.measure, {"substrate": {"type": "lambert"}},
+                     theta_i=masked)
+        # Nothing is missing behind an empty mask.
+        self.assertEqual(rr.Spectrum([400, 500], np.ma.masked_array([0.1, 0.9]))(500), 0.9)
+
+    def test_missing_entries_of_measured_data(self):
+        values = np.tril(np.full((3, 3), 0.1)) + 0.2 * np.eye(3)
+        nm = [400, 500, 600]
+        gap = np.zeros((3, 3), bool)
+        gap[1, 0] = True
+        with_nan = np.where(gap, math.nan, values)
+        as_objects = values.astype(object)
+        as_objects[1, 0] = None
+        for given in (np.ma.masked_array(values, gap), with_nan, as_objects, as_objects.tolist(),
+                      [list(row) for row in np.ma.masked_array(values, gap)],
+                      np.where(gap, NAType(), values.astype(object))):
+            with self.subTest(given=given):
+                self.refused(["values", "[1, 0]"], rr.Reradiation, given, nm, nm)
+                data = rr.Reradiation(given, nm, nm, measured=True)
+                np.testing.assert_array_equal(data.values, with_nan)
+                for call in (data.energy, data.photons, data.reflectance, data.fluorescent_part,
+                             data.repaired, data.factorise, lambda: rr.colour(data),
+                             lambda: rr.Stack([{"ior": 1.5}]).over(data),
+                             lambda: rr.render(material_scene(
+                                 {"substrate": {"type": "lambert", "reradiation": data}}))):
+                    self.refused(["values", "missing at [1, 0]"], call)
+                self.assertIn("Reradiation(", repr(data))
+                self.assertIsNone(data._repr_html_())
+        folder = self.enterContext(_folder())
+        self.refused(["missing"], data.write, folder / "data.exr")
+        data.write(folder / "data.csv")
+        back = rr.BispectralData.read(folder / "data.csv")
+        np.testing.assert_array_equal(back.matrix().values, with_nan)
+        self.refused(["data.csv:7:5", "missing"], rr.Reradiation.read, folder / "data.csv")
+        self.refused(["no entry was measured"], rr.fit,
+                     rr.Reradiation(np.full((3, 3), math.nan), nm, nm, measured=True))
+        self.refused(["values", "inf"], rr.Reradiation, np.full((3, 3), math.inf), nm, nm,
+                     measured=True)
+
+    def test_types_that_are_no_real_numbers(self):
+        for value, words in [([1j, 0], "complex128"), ([True, False], "bool"), (["1", "2"], "<U1"),
+                             ([2**70, 1], "object"), ([[1], [1, 2]], "lengths"),
+                             (np.array(["2020", "2021"], "datetime64[Y]"), "datetime64"),
+                             (np.zeros(2, [("a", float)]), "dtype"),
+                             (np.ma.masked_array([1j, 0]), "complex128"),
+                             (["1", None], "[1]")]:
+            with self.subTest(value=value):
+                self.refused(["value", words], rr.Spectrum, [400, 500], value)
+        self.refused(["value", "inf"], rr.Spectrum, [400, 500],
+                     np.array([1, np.finfo(np.longdouble).max], np.longdouble))
+
+    def test_other_units(self):
+        self.refused(["0.4 to 0.7", "micrometres"], rr.Spectrum, [0.4, 0.7], [0, 1])
+        self.refused(["4000 to 7000", "nm"], rr.Spectrum, [4000, 7000], [0, 1])
+        self.refused(["percent"], rr.Reradiation, 50 * np.eye(2), [400, 500], [400, 500])
+        self.refused(["percent"], rr.Reradiation, 4 * np.eye(2), [400, 500], [400, 500])
+        self.refused(["nm"], rr.Reradiation, np.eye(2), [0.4, 0.5], [0.4, 0.5])
+        folder = self.enterContext(_folder())
+        head = "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
+        (folder / "p.csv").write_text(head + "nm,400,410\n400,50,0\n410,3,60\n")
+        for read in (rr.Reradiation.read, rr.colour, rr.fit):
+            self.refused(["p.csv:5:5", "percent"], read, folder / "p.csv")
+        (folder / "s.csv").write_bytes(b"PK\x03\x04")
+        self.refused(["s.csv", "Zip"], rr.Spectrum.read, folder / "s.csv")
+
     def test_images(self):
         self.refused(["values", "dtype int64"], rr.Image, np.ones((2, 2, 2), int), [400, 500])
         self.refused(["values", "shape (2, 2)"], rr.Image, np.ones((2, 2), np.float32), [400])
@@ -210,7 +300,7 @@ class Hostile(dict):
 try: rr.render(Hostile(film=1))
 except RuntimeError: pass
 values = rr.Image(np.ones((64, 64, 8), np.float32), np.arange(400, 480, 10)).values
-matrix = rr.Reradiation(np.eye(3), [4, 5, 6], [4, 5, 6]).values
+matrix = rr.Reradiation(np.eye(3), [400, 500, 600], [400, 500, 600]).values
 gc.collect()
 assert values.sum() == 64 * 64 * 8 and matrix.trace() == 3
 try: rr._library.Spectrum()

@@ -1,3 +1,4 @@
+#include "host/error.h"
 #include "host/fit/fit.h"
 #include "host/fit/fit_report.h"
 #include "host/fit/fit_summary.h"
@@ -39,6 +40,8 @@ DataPointer data_from_matrix(const ReradiationMatrix& matrix, const std::string&
     data->blocks.push_back({std::nullopt, matrix.values,
                             Eigen::MatrixXd::Constant(matrix.values.rows(), matrix.values.cols(),
                                                       std::numeric_limits<double>::quiet_NaN())});
+    if (data->measured_count() == 0)
+        throw_input_error({}, name + ": no entry was measured", "some entries must be numbers");
     return data;
 }
 

@@ -2,6 +2,7 @@
 #include "host/report/svg.h"
 #include "host/spectral/colour_report.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/plausible_matrix.h"
 #include "host/spectral/reradiation.h"
 #include "tools/python/bindings.h"
 #include "tools/python/values.h"
@@ -28,6 +29,7 @@ MatrixPointer make_matrix(const Eigen::MatrixXd& values, const py::tuple& emissi
     matrix->excitation = grid_from(excitation);
     matrix->kind = measured ? MatrixKind::Measured : MatrixKind::Model;
     matrix->anti_stokes_allowed = anti_stokes;
+    require_plausible_matrix(*matrix, {});
     return matrix;
 }
 

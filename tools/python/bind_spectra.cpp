@@ -2,6 +2,7 @@
 #include "host/spectral/colour.h"
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/spectrum.h"
+#include "host/spectral/wavelength_unit.h"
 #include "tools/python/bindings.h"
 #include "tools/python/values.h"
 
@@ -56,7 +57,10 @@ void bind_spectra(py::module_& module) {
         .def_static("constant", &Spectrum::constant)
         .def_static("table",
                     [](const Doubles& nm, const Doubles& value) {
-                        return Spectrum::table(to_vector(nm), to_vector(value));
+                        const Spectrum made = Spectrum::table(to_vector(nm), to_vector(value));
+                        require_plausible_range(nm.data()[0], nm.data()[nm.size() - 1],
+                                                UnitSource::Fixed, {});
+                        return made;
                     })
         .def_static("gaussian", &Spectrum::gaussian)
         .def_static("line", &Spectrum::line)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import numbers
 import os
-from typing import Any, Optional, Sequence
+from typing import Any, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -82,22 +82,64 @@ def path(name: str, value: Any) -> str:
     return text(name, file)
 
 
-def array(name: str, value: Any, dimensions: int, finite: bool = True) -> np.ndarray:
-    """Real numbers as float64; a copy only where the type or the layout asks for one."""
+def _split_masks(value: Any) -> Tuple[Any, Any]:
+    """(data, mask) of a masked array, or of lists that hold some."""
+    if isinstance(value, (list, tuple)):
+        parts = [_split_masks(entry) for entry in value]
+        return [data for data, _ in parts], [mask for _, mask in parts]
+    return np.ma.getdata(value), np.ma.getmaskarray(value)
+
+
+def _holds_masks(value: Any) -> bool:
+    return isinstance(value, np.ma.MaskedArray) or (
+        isinstance(value, (list, tuple)) and any(_holds_masks(entry) for entry in value))
+
+
+def _is_missing(value: Any) -> bool:
+    """True for None and for the marks of pandas, which need not be installed."""
+    return value is None or type(value).__name__ in ("NAType", "NaTType")
+
+
+def as_array(name: str, value: Any, gaps: bool = False) -> np.ndarray:
+    """The array of a value of any shape and type. Entries that a mask, None or pandas.NA marks as
+    missing are refused, or with `gaps` NaN."""
     try:
-        given = np.asarray(value)
-    except ValueError:
+        data, missing = _split_masks(value) if _holds_masks(value) else (value, None)
+        given = np.asarray(data)
+        missing = None if missing is None else np.asarray(missing, dtype=bool)
+    except (ValueError, RecursionError):
         raise refuse(name, "has rows of different lengths", "give a rectangular array") from None
+    mark = "masked"
+    if missing is None and given.dtype.kind == "O":
+        missing = np.reshape([_is_missing(entry) for entry in given.flat], given.shape)
+        mark = "None or NA"
+    if missing is None or not missing.any():
+        return given
+    at = tuple(int(k) for k in np.argwhere(missing)[0])
+    if not gaps:
+        raise refuse(name, f"is {mark} at {list(at)}" if at else f"is {mark}", "give every number")
+    if given.dtype.kind == "O" and all(_is_number(entry) for entry in given[~missing]):
+        given = np.where(missing, math.nan, given).astype(np.float64)
+    return np.where(missing, math.nan, given) if given.dtype.kind in "iuf" else given
+
+
+def array(name: str, value: Any, dimensions: int, gaps: bool = False) -> np.ndarray:
+    """Finite real numbers as float64, with `gaps` NaN where one is missing; a copy only where the
+    type or the layout asks for one."""
+    given = as_array(name, value, gaps)
     if given.dtype.kind not in "iuf":
         raise refuse(name, f"has dtype {given.dtype}", "give real numbers")
     if given.ndim != dimensions:
         raise refuse(name, f"has shape {given.shape}", f"give {dimensions} dimension(s)")
     if given.size == 0:
         raise refuse(name, "is empty", "give at least one number")
-    if finite and not np.isfinite(given).all():
-        at = tuple(int(k) for k in np.argwhere(~np.isfinite(given))[0])
+    with np.errstate(over="ignore"):  # what is too large for float64 is refused below
+        doubles = np.ascontiguousarray(given, dtype=np.float64)
+    usable = np.isfinite(doubles) | np.isnan(doubles) if gaps else np.isfinite(doubles)
+    if not usable.all():
+        at = tuple(int(k) for k in np.argwhere(~usable)[0])
         raise refuse(name, f"is {given[at]} at {list(at)}", "give finite numbers")
-    return np.ascontiguousarray(given, dtype=np.float64)
+    return doubles
 
 
 def angles(name: str, value: Any, high: float, high_is_allowed: bool) -> np.ndarray:

@@ -64,6 +64,7 @@ class _Plain:
 
     def _matrix(self, matrix: Reradiation) -> dict:
         self._files += 1
+        matrix._whole()
         file = os.path.join(self._folder, f"matrix-{self._files}.csv")
         matrix.write(file)
         return {"file": file}

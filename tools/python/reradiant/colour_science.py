@@ -74,7 +74,7 @@ def to_distributions(matrix: Reradiation) -> Any:
     if not isinstance(matrix, Reradiation):
         raise _checks.refuse("matrix", f"is a {type(matrix).__name__}", "give a Reradiation")
     return _colour().MultiSpectralDistributions(
-        np.array(matrix.values), matrix.emission_nm,
+        np.array(matrix._whole().values), matrix.emission_nm,
         labels=[f"{nm:g}" for nm in matrix.excitation_nm])
 
 

@@ -274,9 +274,9 @@ def colour(matrix: Any, illuminant: Union[str, Sequence[str], Mapping[str, Spect
     20.0
     """
     given = _matrix("matrix", matrix)
-    other = None if against is None else _matrix("against", against)._matrix
+    other = None if against is None else _matrix("against", against)._whole()
     nanometres = None if e308 is None else _checks.flag("e308", e308)
-    return {name: given._matrix.colour(name, light._spectrum, nanometres, other)
+    return {name: given._whole().colour(name, light._spectrum, nanometres, other)
             for name, light in _lights(illuminant).items()}
 
 

@@ -37,7 +37,7 @@ class Image:
     """
 
     def __init__(self, values: Any, nm: Any) -> None:
-        given = np.asarray(values)
+        given = _checks.as_array("values", values)
         if given.dtype.kind not in "f" or given.dtype.itemsize > 8:
             raise _checks.refuse("values", f"has dtype {given.dtype}", "give float32")
         if given.ndim != 3 or 0 in given.shape:

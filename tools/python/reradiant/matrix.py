@@ -17,7 +17,8 @@ class Reradiation:
     Parameters
     ----------
     values : array_like, (emission, excitation)
-        Unit 1; the entry where both wavelengths agree is the reflectance.
+        Unit 1; the entry where both wavelengths agree is the reflectance. Of a measurement, entries
+        that are NaN, None, pandas.NA or masked were not measured: `fit` does without them.
     emission_nm, excitation_nm : array_like
         Centres of the bands in nm, in equal steps.
     quantity : "per-band" or "density-per-nm"
@@ -30,7 +31,8 @@ class Reradiation:
     Raises
     ------
     InputError
-        For shapes that do not fit, uneven wavelengths, and numbers that are not finite.
+        For shapes that do not fit, uneven wavelengths, numbers that are not finite, and values or
+        wavelengths that must be in another unit (percent, micrometres).
 
     Notes
     -----
@@ -49,7 +51,8 @@ class Reradiation:
     def __init__(self, values: Any, emission_nm: Any, excitation_nm: Any, *,
                  quantity: str = "per-band", measured: bool = False,
                  anti_stokes: bool = False) -> None:
-        numbers = _checks.array("values", values, 2)
+        is_measured = _checks.flag("measured", measured)
+        numbers = _checks.array("values", values, 2, gaps=is_measured)
         emission = _checks.grid("emission_nm", emission_nm)
         excitation = _checks.grid("excitation_nm", excitation_nm)
         if numbers.shape != (emission[2], excitation[2]):
@@ -61,14 +64,21 @@ class Reradiation:
                               rtol=0, atol=1e-6 * min(emission[1], excitation[1]))
             numbers = np.where(off, numbers * excitation[1], numbers)
         self._matrix = _library.ReradiationMatrix(
-            numbers, emission, excitation, _checks.flag("measured", measured),
-            _checks.flag("anti_stokes", anti_stokes))
+            numbers, emission, excitation, is_measured, _checks.flag("anti_stokes", anti_stokes))
 
     @classmethod
     def _of(cls, matrix: "_library.ReradiationMatrix") -> "Reradiation":
         made = cls.__new__(cls)
         made._matrix = matrix
         return made
+
+    def _whole(self) -> "_library.ReradiationMatrix":
+        """The matrix for what needs every entry; InputError where one was not measured."""
+        missing = np.isnan(self._matrix.values)
+        if missing.any():
+            at = [int(k) for k in np.argwhere(missing)[0]]
+            raise _checks.refuse("values", f"is missing at {at}", "fit the data and use the result")
+        return self._matrix
 
     @classmethod
     def read(cls, file: Any) -> "Reradiation":
@@ -107,8 +117,11 @@ class Reradiation:
             _checks.grid("excitation_nm", excitation_nm)))
 
     def write(self, file: Any) -> None:
-        """Writes .csv, .bfc or .exr; whole or not at all."""
-        self._matrix.write(_checks.path("file", file))
+        """Writes .csv, .bfc or .exr; whole or not at all. What was not measured fits into .csv only,
+        which `BispectralData.read` takes."""
+        name = _checks.path("file", file)
+        matrix = self._matrix if name.lower().endswith(".csv") else self._whole()
+        matrix.write(name)
 
     @property
     def values(self) -> np.ndarray:
@@ -133,30 +146,30 @@ class Reradiation:
 
     def reflectance(self) -> Spectrum:
         """The diagonal."""
-        return Spectrum._of(self._matrix.reflectance())
+        return Spectrum._of(self._whole().reflectance())
 
     def fluorescent_part(self) -> np.ndarray:
         """`values` with the diagonal set to zero, (emission, excitation)."""
-        return self._matrix.fluorescent_part()
+        return self._whole().fluorescent_part()
 
     def energy(self) -> np.ndarray:
         """Radiant power out over power in, per excitation band; at most 1 for a passive sample."""
-        return self._matrix.balance()[0]
+        return self._whole().balance()[0]
 
     def photons(self) -> np.ndarray:
         """Photons out over photons in, per excitation band."""
-        return self._matrix.balance()[1]
+        return self._whole().balance()[1]
 
     def repaired(self) -> Tuple["Reradiation", List[str]]:
         """The matrix as `render` uses it, and what was changed or is doubtful. InputError when it
         breaks energy."""
-        matrix, warnings = self._matrix.repaired()
+        matrix, warnings = self._whole().repaired()
         return Reradiation._of(matrix), warnings
 
     def factorise(self, rank: int = 4, tolerance: float = 1e-3) -> Tuple[np.ndarray, np.ndarray, float]:
         """Non-negative factors of the fluorescent part on the emission bands: (bands, K) emission,
         (bands, K) excitation with K <= `rank`, and the relative error of the masked product."""
-        return self._matrix.factorise(_checks.integer("rank", rank, 1, 4),
+        return self._whole().factorise(_checks.integer("rank", rank, 1, 4),
                                       _checks.number("tolerance", tolerance, 0, 1))
 
     def __repr__(self) -> str:
@@ -164,5 +177,7 @@ class Reradiation:
         return (f"Reradiation({emission.size} x {excitation.size}, emission {emission[0]:g} to "
                 f"{emission[-1]:g} nm, excitation {excitation[0]:g} to {excitation[-1]:g} nm)")
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> Optional[str]:
+        if np.isnan(self._matrix.values).any():
+            return None  # the text has to do
         return self._matrix.plot("fluorescent part, per band")

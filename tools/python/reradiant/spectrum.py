@@ -22,7 +22,8 @@ class Spectrum:
     Raises
     ------
     InputError
-        For wavelengths that do not ascend, other lengths, and numbers that are not finite.
+        For wavelengths that do not ascend or of which none is from 200 to 1000 nm, other lengths, and
+        numbers that are masked, missing or not finite.
 
     Examples
     --------
@@ -101,12 +102,12 @@ class Spectrum:
 
     @classmethod
     def read(cls, file: Any) -> "Spectrum":
-        """Reads .spd (two columns) or .csv (nm,value)."""
+        """Reads a table of two columns (.csv, .spd), JCAMP-DX, CGATS or IES TM-27 (.spdx)."""
         return cls._of(_library.Spectrum.read(_checks.path("file", file)))
 
     def at(self, nm: Any) -> Union[float, np.ndarray]:
         """Values at wavelengths in nm, of the shape of `nm`."""
-        given = np.asarray(nm)
+        given = _checks.as_array("nm", nm)
         flat = _checks.array("nm", given.reshape(-1), 1)
         values = self._spectrum.at(flat)
         return float(values[0]) if given.ndim == 0 else values.reshape(given.shape)

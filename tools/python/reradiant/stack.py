@@ -47,8 +47,8 @@ class Stack:
         return self._stack.count
 
     def _angles_and_bands(self, theta_deg: Any, nm: Any) -> tuple:
-        angles = np.asarray(theta_deg)
-        bands = np.asarray(nm)
+        angles = _checks.as_array("theta_deg", theta_deg)
+        bands = _checks.as_array("nm", nm)
         flat = _checks.array("nm", bands.reshape(-1), 1)
         if (flat <= 0).any():
             raise _checks.refuse("nm", f"holds {flat.min():g}", "wavelengths are above 0")
@@ -79,7 +79,7 @@ class Stack:
         if matrix._matrix.emission != matrix._matrix.excitation:
             raise _checks.refuse("matrix", "has different emission and excitation bands",
                                  "give one whose bands agree")
-        return _library.effective_matrix(matrix.values,
+        return _library.effective_matrix(matrix._whole().values,
                                          self.internal_reflectance(matrix.emission_nm))
 
     def __repr__(self) -> str:

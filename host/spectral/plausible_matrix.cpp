@@ -1,0 +1,92 @@
+#include "host/spectral/plausible_matrix.h"
+
+#include "host/error.h"
+#include "host/spectral/matrix_io.h"
+#include "host/spectral/text_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <vector>
+
+namespace reradiant {
+
+namespace {
+
+constexpr double shortest_nm = 100.0, longest_nm = 3000.0;
+constexpr double largest_value = 10.0, largest_median_energy = 2.0;
+constexpr const char* remedy =
+    "values have unit 1; divide percent by 100 or write '# unit: percent'";
+
+/// Line and column of the first number of a CSV that is beyond the limit.
+SourcePosition place_of_large_value(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (lower_case_ending(file) != ".csv" || !std::filesystem::exists(file, ignored))
+        return {file.string()};
+    TextReader reader(file);
+    std::size_t first = 0; // cell of a row that holds a value; 0 before the headings
+    for (std::string_view line; reader.next_line(line);) {
+        if (trimmed(line).empty() || trimmed(line).starts_with('#'))
+            continue;
+        const std::vector<TextToken> tokens = reader.split_cells(line);
+        if (first == 0) {
+            // The long forms have wavelengths and angles first, the wide one a wavelength.
+            const std::string_view heading = tokens[0].text;
+            first = heading == "excitation_nm" ? 2 : heading == "theta_i_deg" ? 5 : 1;
+            continue;
+        }
+        for (std::size_t k = first; k < tokens.size(); ++k)
+            if (!is_gap(tokens[k].text) && is_number(tokens[k].text) &&
+                std::abs(reader.number(tokens[k])) > largest_value)
+                return reader.position(tokens[k]);
+    }
+    return {file.string()};
+}
+
+/// Energy that each excitation band sends out over what it receives, gaps left out.
+std::vector<double> energies(const ReradiationMatrix& matrix) {
+    ReradiationMatrix whole = matrix;
+    whole.values = matrix.values.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
+    return column_balance(whole).radiant;
+}
+
+} // namespace
+
+void require_plausible_bands(const WavelengthGrid& emission, const WavelengthGrid& excitation,
+                             const std::filesystem::path& file) {
+    for (const WavelengthGrid* grid : {&emission, &excitation})
+        if (grid->from_nm < shortest_nm || grid->to_nm() > longest_nm)
+            throw_input_error({file.string(), file.empty() ? 0 : 1, 1},
+                              fmt::format("wavelengths from {:.6g} to {:.6g} cannot be in nm",
+                                          grid->from_nm, grid->to_nm()),
+                              fmt::format("give nm, {} to {}", shortest_nm, longest_nm));
+}
+
+void require_plausible_values(const Eigen::MatrixXd& values, const std::filesystem::path& file) {
+    double largest = 0.0;
+    for (const double value : values.reshaped())
+        if (std::isfinite(value))
+            largest = std::max(largest, std::abs(value));
+    if (largest > largest_value)
+        throw_input_error(place_of_large_value(file),
+                          fmt::format("a radiance factor of {:.6g} in one band cannot be", largest),
+                          remedy);
+}
+
+void require_plausible_matrix(const ReradiationMatrix& matrix, const std::filesystem::path& file) {
+    require_plausible_bands(matrix.emission, matrix.excitation, file);
+    require_plausible_values(matrix.values, file);
+    std::vector<double> energy = energies(matrix);
+    const auto middle = energy.begin() + static_cast<std::ptrdiff_t>(energy.size() / 2);
+    std::nth_element(energy.begin(), middle, energy.end());
+    if (*middle > largest_median_energy)
+        throw_input_error({file.string(), file.empty() ? 0 : 1, 1},
+                          fmt::format("excitation bands return {:.6g} times the energy that they "
+                                      "receive, in the median",
+                                      *middle),
+                          remedy);
+}
+
+} // namespace reradiant
