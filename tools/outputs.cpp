@@ -65,11 +65,12 @@ void check_outputs(const CommonOptions& common, std::vector<NamedOutput> outputs
         if (output.file.empty())
             continue;
         const OutputFile place = output_file(output.file);
+        if (!place.is_stream || output.ending_chooses)
+            check_ending(output);
         if (place.is_stream) {
             check_output_file(output.file);
             continue;
         }
-        check_ending(output);
         if (!lies_in(place.file, folder))
             check_output_file(output.file);
         const fs::path file = one_name(place.file);

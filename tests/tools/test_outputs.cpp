@@ -117,7 +117,8 @@ TEST_F(Outputs, AnEndingOfAnotherFormatIsRefused) {
             std::string("out") + (ending == std::string(".png") ? ".exr" : ".png");
         expect_failure(2, with_name(command, name), name + ": ");
     }
-    expect_failure(2, with_name("fit ORANGE -o NAME", "out"), "out: ");
+    for (const char* name : {"out", "/dev/stdout"})
+        expect_failure(2, with_name("fit ORANGE -o NAME", name), std::string(name) + ": ");
 }
 
 TEST_F(Outputs, OneFileForTwoOutputsOrForAnInputIsRefused) {

@@ -63,6 +63,24 @@ TEST_F(SynthAndColour, LayeredDataCarryStandardErrors) {
     EXPECT_NE(text, file_bytes(folder / "other.csv"));
 }
 
+TEST_F(SynthAndColour, LampsWithLinesAreSummedOverNanometresAndSaySo) {
+    const std::string command =
+        "colour " + matrices + "synthetic-orange.csv --illuminant FL11,D65 ";
+    const ProgramResult seen = run(command + "--json out.json");
+    ASSERT_EQ(seen.exit_code, 0) << seen.errors;
+    EXPECT_NE(seen.output.find("FL11\n  summed over 1 nm: "), std::string::npos) << seen.output;
+    EXPECT_EQ(seen.output.find("D65\n  summed"), std::string::npos) << seen.output;
+    const auto both = json("out.json");
+    EXPECT_EQ(both["FL11"]["sums"], "1 nm");
+    EXPECT_EQ(both["D65"]["sums"], "bands");
+    ASSERT_EQ(run(command + "--plain-sums --json plain.json").exit_code, 0);
+    ASSERT_EQ(run(command + "--e308 --json fine.json").exit_code, 0);
+    EXPECT_EQ(both["FL11"]["XYZ"], json("fine.json")["FL11"]["XYZ"]);
+    EXPECT_NE(both["FL11"]["XYZ"], json("plain.json")["FL11"]["XYZ"]);
+    EXPECT_EQ(both["D65"]["XYZ"], json("plain.json")["D65"]["XYZ"]);
+    expect_failure(2, command + "--plain-sums --e308", "--plain-sums");
+}
+
 TEST_F(SynthAndColour, QuietSaysNothing) {
     const ProgramResult seen =
         run("colour " + matrices + "synthetic-orange.csv --illuminant FL2 --quiet");
