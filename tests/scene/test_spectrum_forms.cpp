@@ -90,6 +90,15 @@ TEST_F(SpectrumForms, FilesAreReadBesideTheScene) {
     EXPECT_NEAR(read("{ file = \"s.csv\" }")(450.0), 2.0, 1e-14);
 }
 
+TEST_F(SpectrumForms, WavelengthsOfAnotherUnitAreRefusedAtTheirKey) {
+    EXPECT_EQ(error_column("{ nm = [4000, 7000], value = [0, 1] }", "cannot be in nm"), 14);
+    EXPECT_EQ(error_column("{ nm = [1, 10], value = [0, 1] }", "cannot be in nm"), 14);
+    const auto spectrum = write("s.csv", "0.4,0.1\n0.7,0.2\n");
+    const Caught error = error_of([&] { read("{ file = \"s.csv\" }"); });
+    EXPECT_EQ(error.file, spectrum.string());
+    EXPECT_NE(error.text.find("micrometres"), std::string::npos) << error.text;
+}
+
 TEST_F(SpectrumForms, AnErrorWithinASpectrumFileIsPlacedThere) {
     const auto spectrum = write("s.spd", "400 1\n500 x\n");
     const Caught error = error_of([&] { read("{ file = \"s.spd\" }"); });
