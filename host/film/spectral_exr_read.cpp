@@ -15,6 +15,7 @@
 #include <ImfStringAttribute.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -127,13 +128,27 @@ void read_rows(Imf::MultiPartInputFile& input, int part, const std::vector<Targe
 }
 
 [[noreturn]] void refuse_no_spectrum(const fs::path& file, const Imf::Header& header) {
+    constexpr std::size_t most_names = 8;
+    std::vector<std::string> names;
     const Imf::ChannelList& channels = header.channels();
     for (auto channel = channels.begin(); channel != channels.end(); ++channel)
         if (std::string_view(channel.name()).starts_with("T."))
             refuse(file, "holds reflectance or re-radiation (T channels), no radiance",
                    "give an image with channels S0.<nm>nm");
-    refuse(file, "has no spectral channels (S0.<nm>nm)",
+        else if (names.size() < most_names)
+            names.emplace_back(channel.name());
+    refuse(file,
+           fmt::format("has no spectral channels (S0.<nm>nm), but {}", fmt::join(names, ", ")),
            "give a spectral image as `reradiant render` writes it");
+}
+
+/// A band whose name is not understood would leave the spectrum without it.
+void check_names(const fs::path& file, const Imf::Header& header) {
+    const Imf::ChannelList& channels = header.channels();
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+        if (std::string_view(channel.name()).starts_with("S0.") && !band_of_channel(channel.name()))
+            refuse(file, fmt::format("channel {} names no wavelength", channel.name()),
+                   "name it like S0.380,000000nm");
 }
 
 /// The first part with a spectrum; the first of all where none has one.
@@ -152,6 +167,7 @@ void read_image(Imf::MultiPartInputFile& input, int part, const fs::path& file,
     const std::vector<BandChannel> bands = band_channels(header);
     if (bands.empty())
         refuse_no_spectrum(file, header);
+    check_names(file, header);
     const ExrWindow window(header);
     check_memory(file, window, bands.size());
     for (const BandChannel& band : bands)

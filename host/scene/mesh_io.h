@@ -26,8 +26,8 @@ std::string_view without_byte_order_mark(const std::filesystem::path& file, std:
 
 /// Appends the fan of a convex face whose corners are vertex numbers.
 void append_fan(const std::vector<std::uint32_t>& corners, MeshShape& mesh);
-/// Appends a face of any form: its vertex numbers and where they lie. Input Error at `at` that names
-/// face `number` for a polygon that triangulate_polygon refuses.
+/// Appends a face of any form: its vertex numbers and where they lie. Input Error at `at` that
+/// names face `number` for a polygon that triangulate_polygon refuses.
 void append_face(const std::vector<std::uint32_t>& vertices, std::span<const Vector3> corners,
                  std::uint64_t number, const SourcePosition& at, MeshShape& mesh);
 

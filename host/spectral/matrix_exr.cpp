@@ -83,6 +83,9 @@ std::vector<Channel> channels_of(const Imf::Header& header, const SourcePosition
     std::vector<Channel> channels;
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
         const auto channel = parse_channel(it.name());
+        if (!channel && std::string_view(it.name()).starts_with("T."))
+            throw_input_error(position, fmt::format("channel {} names no wavelengths", it.name()),
+                              "name it like T.380,000000nm.520,000000nm");
         if (!channel)
             continue;
         if (it.channel().xSampling != 1 || it.channel().ySampling != 1)

@@ -140,6 +140,10 @@ TEST(ForeignExr, MissingBandAndMissingSpectrumAreRefused) {
     write_foreign(folder / "gap.exr", {"S0.400nm", "S0.410nm", "S0.430nm"}, Imf::FLOAT,
                   small_window);
     error_message(2, [&] { read_spectral_exr(folder / "gap.exr"); });
+    write_foreign(folder / "name.exr", {"S0.400nm", "S0.410nm", "S0.420mn"}, Imf::FLOAT,
+                  small_window);
+    const std::string message = error_message(2, [&] { read_spectral_exr(folder / "name.exr"); });
+    EXPECT_NE(message.find("S0.420mn"), std::string::npos) << message;
     write_foreign(folder / "rgb.exr", {"R", "G", "B"}, Imf::FLOAT, small_window);
     error_message(2, [&] { read_spectral_exr(folder / "rgb.exr"); });
     EXPECT_EQ(exr_channel_names(folder / "rgb.exr"), (std::vector<std::string>{"B", "G", "R"}));

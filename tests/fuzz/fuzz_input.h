@@ -16,7 +16,7 @@ inline std::string_view text_of(const std::uint8_t* bytes, std::size_t size) {
 }
 
 /// A folder of this process, in memory where the system has a place for that; it goes with the
-/// process. The first call also silences the log and points the caches and $HOME into it.
+/// process. The first call also points the caches and $HOME into it.
 const std::filesystem::path& folder();
 
 /// Writes a file of this name into the folder, over what it held before.

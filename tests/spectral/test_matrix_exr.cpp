@@ -143,6 +143,7 @@ TEST_F(MatrixExr, NamesOfOtherProgramsAreRead) {
 TEST_F(MatrixExr, EntriesGivenTwiceAndLargerImagesAreRefused) {
     EXPECT_NE(refusal({"T.400nm", "T.410nm", "T.400,0nm.400nm"}).find("the same entry"),
               std::string::npos);
+    EXPECT_NE(refusal({"T.400nm", "T.410nm", "T.420xm"}).find("T.420xm"), std::string::npos);
     EXPECT_NE(refusal({"T.400nm", "T.410nm", "T.430nm"}).find("equally spaced"), std::string::npos);
     EXPECT_THROW(read_foreign({"T.400nm", "T.410nm"}, {Imath::V2i(0), Imath::V2i(1, 0)}), Error);
 }
