@@ -27,7 +27,7 @@ namespace {
 
 struct FitOptions {
     std::filesystem::path data, output, stack, report, model_file;
-    std::string model = "factors", loss = "none";
+    std::string model = "factors", loss = "none", mask = "auto";
     std::optional<int> rank;
     std::optional<double> smooth_nm, spill_nm;
     std::optional<std::size_t> bytes;
@@ -48,6 +48,7 @@ FitSettings settings_of(const FitOptions& options, const CommonOptions& common) 
     settings.smooth_nm = options.smooth_nm;
     settings.most_bytes = options.bytes;
     settings.spill_nm = options.spill_nm;
+    settings.mask = mask_rules_from_text(options.mask);
     settings.anti_stokes = options.anti_stokes;
     settings.unknown = unknown_layers_from_names(options.unknown);
     settings.seed = common.seed;
@@ -103,6 +104,7 @@ SampleIdentity fit_identity(const FitOptions& options, const FitSettings& settin
             {"rank", number(options.rank)},
             {"smoothing", number(options.smooth_nm)},
             {"spill", number(options.spill_nm)},
+            {"mask", options.mask},
             {"bytes", number(options.bytes)},
             {"anti-stokes", options.anti_stokes ? "on" : "off"},
             {"seed", std::to_string(settings.seed)},
@@ -192,6 +194,13 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
         ->add_option("--spill-nm", options->spill_nm,
                      "entries this near to the diagonal are not fitted; default: one band")
         ->check(CLI::NonNegativeNumber);
+    command
+        ->add_option("--mask", options->mask,
+                     "entries that count as not measured: auto (scatter of the monochromators that "
+                     "stands out), none, or a list such as first:20,second:15,third:10,half:10 "
+                     "(+- nm about emission = 1, 2, 3, 1/2 x excitation; never the diagonal) and "
+                     "box:300-350x500-560 (excitation x emission)")
+        ->capture_default_str();
     command->add_option("--memory-limit", options->memory_limit_bytes,
                         "refuse a fit that would take more bytes (default: 80 % of the machine's)");
     command->add_option("--loss", options->loss, "none, huber or cauchy")->capture_default_str();

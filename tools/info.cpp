@@ -4,6 +4,7 @@
 #include "host/report/json_file.h"
 #include "host/scene/scene.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/scatter_warnings.h"
 #include "host/spectral/spectrum_formats.h"
 #include "tools/command.h"
 #include "tools/describe_material.h"
@@ -71,16 +72,19 @@ Json describe_matrix(const fs::path& file) {
     const auto highest = [](const std::vector<double>& sums) {
         return sums.empty() ? 0.0 : *std::max_element(sums.begin(), sums.end());
     };
-    return {{"kind", "re-radiation matrix"},
-            {"claims", matrix.kind == MatrixKind::Model ? "model" : "measured"},
-            {"quantity", "per-band"},
-            {"geometry", matrix.geometry},
-            {"anti_stokes_allowed", matrix.anti_stokes_allowed},
-            {"fluorescent", matrix.is_fluorescent()},
-            {"emission", describe_grid(matrix.emission)},
-            {"excitation", describe_grid(matrix.excitation)},
-            {"largest_radiant_column_sum", highest(balance.radiant)},
-            {"largest_photon_column_sum", highest(balance.photons)}};
+    Json result = {{"kind", "re-radiation matrix"},
+                   {"claims", matrix.kind == MatrixKind::Model ? "model" : "measured"},
+                   {"quantity", "per-band"},
+                   {"geometry", matrix.geometry},
+                   {"anti_stokes_allowed", matrix.anti_stokes_allowed},
+                   {"fluorescent", matrix.is_fluorescent()},
+                   {"emission", describe_grid(matrix.emission)},
+                   {"excitation", describe_grid(matrix.excitation)},
+                   {"largest_radiant_column_sum", highest(balance.radiant)},
+                   {"largest_photon_column_sum", highest(balance.photons)}};
+    if (const std::vector<std::string> scatter = scatter_warnings(matrix); !scatter.empty())
+        result["scatter"] = scatter;
+    return result;
 }
 
 Json describe_spectrum(const fs::path& file) {

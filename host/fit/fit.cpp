@@ -171,11 +171,15 @@ FitResult empty_result(const BispectralData& data, const PreparedTarget& prepare
     return result;
 }
 
+double spill_nm(const BispectralData& data, const FitSettings& settings) {
+    return settings.spill_nm.value_or(data.emission.step_nm);
+}
+
 FitResult fit_bare(const SubstrateData& substrate, const FitSettings& settings,
                    Clock::time_point begin) {
     const BispectralData& data = substrate.data;
-    PreparedTarget prepared = prepare_target(
-        data, {settings.anti_stokes, settings.spill_nm.value_or(data.emission.step_nm)});
+    PreparedTarget prepared =
+        prepare_target(data, {settings.anti_stokes, spill_nm(data, settings)});
     prepared.noise_is_estimated = prepared.noise_is_estimated || substrate.noise_is_estimated;
     prepared.errors = substrate.errors;
     FitResult result = empty_result(data, prepared, settings);
@@ -210,10 +214,15 @@ const char* fit_model_name(FitModel model) {
 FitResult fit_reradiation(const BispectralData& data, const FitSettings& settings) {
     const Clock::time_point begin = Clock::now();
     check_model(settings);
-    const SubstrateData substrate = invert_stack(data, settings.stack.value_or(LayerStack{}),
-                                                 settings.unknown, settings.anti_stokes);
+    FitMask mask = mask_of(data, settings.mask, {spill_nm(data, settings), settings.anti_stokes});
+    const SubstrateData substrate =
+        invert_stack(with_gaps(data, mask), settings.stack.value_or(LayerStack{}), settings.unknown,
+                     settings.anti_stokes);
     FitResult result = fit_bare(substrate, settings, begin);
     result.notes.insert(result.notes.begin(), substrate.notes.begin(), substrate.notes.end());
+    result.notes.insert(result.notes.begin(), mask.notes.begin(), mask.notes.end());
+    result.warnings.insert(result.warnings.begin(), mask.warnings.begin(), mask.warnings.end());
+    result.mask = std::move(mask);
     if (settings.unknown.any())
         result.stack = substrate.estimate;
     check_fit(result);

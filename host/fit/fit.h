@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/fit/bispectral_data.h"
+#include "host/fit/fit_mask.h"
 #include "host/fit/non_negative_solver.h"
 #include "host/fit/robust_loss.h"
 #include "host/fit/stack_inversion.h"
@@ -37,6 +38,7 @@ struct FitSettings {
     /// Entries with |emission - excitation| up to this are not used: the reflected light that
     /// spills over from the diagonal. Empty: one emission step.
     std::optional<double> spill_nm;
+    MaskRules mask;                  ///< entries that count as not measured
     std::optional<LayerStack> stack; ///< what lay above the sample; empty: nothing did
     UnknownLayers unknown;           ///< what of the stack is fitted together with the matrix
     int starts = 3;                  ///< initial guesses that are tried
@@ -66,6 +68,7 @@ struct FitResult {
     Eigen::MatrixXd sigma; ///< standard error of every entry of `matrix`, NaN: unknown
     Eigen::MatrixXd data;  ///< what was fitted (through the layer: of the substrate), NaN: missing
     Eigen::MatrixXd used;  ///< 1 where an entry of `data` took part in the fit, else 0
+    FitMask mask;          ///< entries that were taken as not measured
     FittedCurves emission; ///< integral 1 over emission, 1/nm; empty for `matrix`
     FittedCurves excitation; ///< share of the irradiance that the term would emit untruncated
     double noise = 0.0;      ///< median standard error of the data

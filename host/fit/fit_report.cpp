@@ -108,6 +108,28 @@ void add_stack(HtmlPage& page, const FitResult& result) {
         page.paragraph(ambiguity + ".");
 }
 
+/// The first block as it was measured, without its diagonal, which would outshine the rest.
+void add_mask(HtmlPage& page, const BispectralData& data, const FitResult& result) {
+    if (!result.mask.any())
+        return;
+    page.heading("Mask");
+    svg::HeatMap map;
+    map.title = "data as measured";
+    map.x_label = "excitation, nm";
+    map.y_label = "emission, nm";
+    map.x = data.excitation.centres_nm();
+    map.y = data.emission.centres_nm();
+    map.value = data.blocks.front().value;
+    for (int i = 0; i < data.excitation.count; ++i)
+        for (int o = 0; o < data.emission.count; ++o)
+            if (on_diagonal(data.emission, o, data.excitation, i))
+                map.value(o, i) = std::numeric_limits<double>::quiet_NaN();
+    map.marked = result.mask.entries;
+    page.figure(svg::heat_map(map),
+                fmt::format("Outlined entries count as not measured: --mask {}.",
+                            mask_rules_text(result.mask.rules)));
+}
+
 void add_maps(HtmlPage& page, const FitResult& result) {
     page.heading("Data, model, residuals");
     const Eigen::MatrixXd gaps = Eigen::MatrixXd::Constant(
@@ -190,6 +212,7 @@ void write_fit_report(const std::filesystem::path& file, const BispectralData& d
     add_numbers(page, data, result);
     add_yields(page, result);
     add_stack(page, result);
+    add_mask(page, data, result);
     add_maps(page, result);
     add_curves(page, result);
     add_convergence(page, result);

@@ -2,6 +2,20 @@
 
 namespace reradiant {
 
+namespace {
+
+nlohmann::ordered_json mask_summary(const FitMask& mask) {
+    nlohmann::ordered_json found = nlohmann::ordered_json::array();
+    for (const FoundScatter& scatter : mask.found)
+        found.push_back({{"order", scatter_order_name(scatter.line.order)},
+                         {"half_width_nm", scatter.line.half_width_nm},
+                         {"height", scatter.height},
+                         {"entries", scatter.entries}});
+    return {{"rules", mask_rules_text(mask.rules)}, {"entries", mask.measured}, {"found", found}};
+}
+
+} // namespace
+
 nlohmann::ordered_json fit_summary(const FitResult& result) {
     nlohmann::ordered_json yields = nlohmann::ordered_json::array();
     for (const QuantumYield& yield : result.quantum_yield)
@@ -26,6 +40,7 @@ nlohmann::ordered_json fit_summary(const FitResult& result) {
                                    {"reduced_chi_squared", result.reduced_chi_squared},
                                    {"parameters", result.parameters},
                                    {"covariance_rank", result.covariance_rank},
+                                   {"mask", mask_summary(result.mask)},
                                    {"notes", result.notes},
                                    {"warnings", result.warnings}};
     if (result.stack) {

@@ -109,6 +109,23 @@ std::string draw_hatching(const HeatMap& map, const Frame& frame) {
     return path.empty() ? path : fmt::format("<path d=\"{}\" stroke=\"#777\"/>\n", path);
 }
 
+/// An outline around each marked cell, within it, so that those of neighbours are told apart.
+std::string draw_marks(const HeatMap& map, const Frame& frame) {
+    const double width = frame.width / static_cast<double>(map.value.cols());
+    const double height = frame.height / static_cast<double>(map.value.rows());
+    constexpr double inset = 0.5;
+    std::string path;
+    for (Eigen::Index row = 0; row < map.marked.rows(); ++row)
+        for (Eigen::Index column = 0; column < map.marked.cols(); ++column)
+            if (map.marked(row, column) > 0.0)
+                path += fmt::format("M{:.1f} {:.1f}h{:.1f}v{:.1f}h{:.1f}z",
+                                    frame.left + static_cast<double>(column) * width + inset,
+                                    frame.bottom() - static_cast<double>(row) * height - inset,
+                                    width - 2.0 * inset, 2.0 * inset - height, 2.0 * inset - width);
+    return path.empty() ? path
+                        : fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"#e3211c\"/>\n", path);
+}
+
 std::string draw_colour_bar(const HeatMap& map, const ColourScale& scale, const Frame& frame) {
     constexpr double bar_width = 18;
     const double left = frame.right() + 20;
@@ -141,10 +158,16 @@ std::string heat_map(const HeatMap& map) {
         throw std::invalid_argument(fmt::format("a heat map of {} x {} values has {} y and {} x",
                                                 map.value.rows(), map.value.cols(), map.y.size(),
                                                 map.x.size()));
+    if (map.marked.size() > 0 &&
+        (map.marked.rows() != map.value.rows() || map.marked.cols() != map.value.cols()))
+        throw std::invalid_argument(fmt::format("a heat map of {} x {} values has {} x {} marks",
+                                                map.value.rows(), map.value.cols(),
+                                                map.marked.rows(), map.marked.cols()));
     frame.width = 400;
     frame.height = 360;
     const ColourScale scale = scale_of(map);
     const std::string content = draw_cells(map, scale, frame) + draw_hatching(map, frame) +
+                                draw_marks(map, frame) +
                                 draw_frame(frame, map.title, map.x_label, map.y_label, false) +
                                 draw_colour_bar(map, scale, frame);
     return document(frame.right() + 120, frame.bottom() + 52, content);

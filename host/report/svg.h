@@ -27,9 +27,10 @@ std::string line_plot(const Axes& axes, const std::vector<Series>& series);
 
 struct HeatMap {
     std::string title = {}, x_label = {}, y_label = {};
-    std::vector<double> x, y; ///< cell centres, ascending in equal steps
-    Eigen::MatrixXd value;    ///< (y, x); NaN cells are hatched grey
-    bool diverging = false;   ///< colours centred at 0, for differences
+    std::vector<double> x, y;    ///< cell centres, ascending in equal steps
+    Eigen::MatrixXd value;       ///< (y, x); NaN cells are hatched grey
+    bool diverging = false;      ///< colours centred at 0, for differences
+    Eigen::MatrixXd marked = {}; ///< cells above 0 get a red outline; empty: none
 };
 
 /// A matrix in perceptually uniform colours with a colour bar. std::invalid_argument when sizes

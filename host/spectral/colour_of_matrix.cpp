@@ -1,5 +1,7 @@
 #include "host/spectral/colour_of_matrix.h"
 
+#include "host/spectral/scatter_warnings.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -266,7 +268,7 @@ MatrixColour colour_of_matrix(const ReradiationMatrix& matrix, const Spectrum& i
 
 std::vector<std::string> colour_warnings(const ReradiationMatrix& matrix,
                                          const Spectrum& illuminant, const std::string& name) {
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = scatter_warnings(matrix);
     const WavelengthGrid& bands = matrix.excitation;
     const Eigen::MatrixXd fluorescence = matrix.fluorescent_part();
     int dark = 0;

@@ -61,8 +61,8 @@ struct MatrixColour {
 MatrixColour colour_of_matrix(const ReradiationMatrix& matrix, const Spectrum& illuminant,
                               ColourSum sum);
 
-/// What a reader of the colour must know: excitation below the start of the illuminant's table
-/// (380 nm for lamps) counts as dark, reflectance is carried on beyond the excitation bands.
+/// What a reader of the colour must know: excitation below the start of the illuminant's table (380
+/// nm for lamps) is dark, reflectance goes on beyond the excitation bands, scatter stands out.
 std::vector<std::string> colour_warnings(const ReradiationMatrix& matrix,
                                          const Spectrum& illuminant, const std::string& name);
 

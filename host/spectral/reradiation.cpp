@@ -1,5 +1,7 @@
 #include "host/spectral/reradiation.h"
 
+#include "host/spectral/scatter_warnings.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -191,6 +193,8 @@ MatrixRepair repair_for_rendering(ReradiationMatrix& matrix, std::vector<std::st
     require_finite(matrix);
     if (matrix.kind == MatrixKind::Model)
         refuse_impossible_entries(matrix);
+    for (std::string& warning : scatter_warnings(matrix))
+        warnings.push_back(std::move(warning));
     MatrixRepair repair = zero_impossible_entries(matrix);
     const ColumnBalance balance = column_balance(matrix);
     refuse_energy_gain(matrix, balance.radiant);

@@ -76,6 +76,7 @@ class AgainstTheProgram(unittest.TestCase):
         fitted = rr.fit(self.folder / "d.csv", rank=1)
         np.testing.assert_allclose(fitted.matrix.values,
                                    rr.Reradiation.read(self.folder / "f.csv").values, rtol=1e-12)
+        self.assertFalse(fitted.masked.any())
         told = json.loads((self.folder / "f.json").read_text())
         self.assertEqual(told["quantum_yield"], fitted.summary["quantum_yield"])
         self.assertEqual(fitted.emission.shape, (41, 1))
@@ -84,6 +85,26 @@ class AgainstTheProgram(unittest.TestCase):
                          rr.colour(fitted.matrix, ["D65", "A"]))
         html = fitted._repr_html_()
         self.assertTrue(html.startswith("<svg") and html.rstrip().endswith("</svg>"))
+
+
+    def test_fit_with_a_mask(self):
+        emission, excitation = np.arange(400, 800, 10), np.arange(300, 400, 10)
+        values = 0.05 * np.exp(-0.5 * (((emission[:, None] - 460) / 30) ** 2
+                                       + ((excitation - 340) / 40) ** 2))
+        line = emission[:, None] == 2 * excitation
+        values[line] += 0.05
+        data = rr.Reradiation(values, emission, excitation)
+        fitted = rr.fit(data, rank=1)
+        np.testing.assert_array_equal(fitted.masked, line)
+        self.assertEqual(fitted.summary["mask"]["rules"], "auto,second:5")
+        self.assertLess(fitted.summary["relative_rmse"], 1e-3)
+        self.assertGreater(rr.fit(data, rank=1, mask="none").summary["relative_rmse"], 0.1)
+        boxes = rr.fit(data, rank=1, mask="second:5,box:300-320x400-420")
+        self.assertEqual(boxes.masked.sum(), 19)
+        with self.assertRaises(rr.InputError):
+            rr.fit(data, mask="secnd:5")
+        with self.assertRaises(rr.InputError):
+            rr.fit(data, mask=5)
 
 
 class Objects(unittest.TestCase):

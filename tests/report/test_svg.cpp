@@ -149,6 +149,17 @@ TEST(Svg, HeatMapShowsTheMatrixAndItsGaps) {
     EXPECT_EQ(count(svg, "M18 22h1v1h-1z"), 1);
 }
 
+TEST(Svg, HeatMapOutlinesMarkedCells) {
+    HeatMap map = gaussian_map(36, 40); // cells of 10 x 10
+    map.marked = Eigen::MatrixXd::Zero(36, 40);
+    map.marked(2, 3) = map.marked(2, 4) = 1.0;
+    const std::string svg = heat_map(map);
+    expect_sound(svg);
+    EXPECT_EQ(count(svg, "h9.0v-9.0h-9.0z"), 2);
+    map.marked = Eigen::MatrixXd::Zero(36, 39);
+    EXPECT_THROW(heat_map(map), std::invalid_argument);
+}
+
 TEST(Svg, DivergingMapIsCentredAtZero) {
     HeatMap map = gaussian_map(41, 49);
     map.value.array() -= 0.25;

@@ -34,7 +34,53 @@ std::string measured_csv() {
     return text;
 }
 
+/// The same with light at twice the excitation, as bright as the fluorescence.
+std::string csv_with_scatter() {
+    std::string text = "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
+                       "# kind: measured\nnm";
+    for (int i = 0; i < 10; ++i)
+        text += fmt::format(",{}", 300 + 10 * i);
+    text += '\n';
+    for (int o = 0; o < 40; ++o) {
+        text += fmt::format("{}", 400 + 10 * o);
+        for (int i = 0; i < 10; ++i) {
+            const double e = (o - 6) / 3.0, x = (i - 4) / 4.0;
+            const double line = 400 + 10 * o == 2 * (300 + 10 * i) ? 0.05 : 0.0;
+            text += fmt::format(",{}", 0.05 * std::exp(-0.5 * (e * e + x * x)) + line +
+                                           2e-4 * std::sin(12.9898 * o + 78.233 * i));
+        }
+        text += '\n';
+    }
+    return text;
+}
+
 } // namespace
+
+TEST_F(FitCommand, MasksScatterAndSaysSo) {
+    put("data.csv", csv_with_scatter());
+    const std::string line = "second-order scatter at emission = 2 x excitation +- 5 nm";
+    const ProgramResult result =
+        run("fit data.csv -o out.csv --rank 1 --report report.html --json fit.json");
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_NE(result.output.find(line), std::string::npos) << result.output;
+    const auto json = nlohmann::json::parse(file_bytes(folder / "fit.json"));
+    EXPECT_EQ(json["mask"]["rules"], "auto,second:5");
+    EXPECT_EQ(json["mask"]["entries"], 10);
+    EXPECT_LT(json["relative_rmse"].get<double>(), 0.02);
+    const std::string report = file_bytes(folder / "report.html");
+    EXPECT_NE(report.find("--mask auto,second:5"), std::string::npos);
+    EXPECT_NE(report.find(line), std::string::npos);
+    const ProgramResult kept = run("fit data.csv -o out.csv --rank 1 --mask none --json fit.json");
+    EXPECT_EQ(kept.output.find("scatter"), std::string::npos);
+    EXPECT_GT(nlohmann::json::parse(file_bytes(folder / "fit.json"))["relative_rmse"], 0.1);
+    expect_failure(2, "fit data.csv -o new.csv --mask secnd:5", "secnd:5");
+    expect_failure(2, "fit data.csv -o new.csv --mask box:0-900x0-900", "data.csv");
+    for (const char* const use : {"validate data.csv", "info data.csv", "colour data.csv"}) {
+        const ProgramResult used = run(use);
+        EXPECT_EQ(used.exit_code, 0) << use << used.errors;
+        EXPECT_NE((used.output + used.errors).find(line), std::string::npos) << use;
+    }
+}
 
 TEST_F(FitCommand, WritesMatrixModelReportAndJson) {
     put("data.csv", measured_csv());

@@ -52,6 +52,7 @@ FitSettings settings_from(const py::dict& given) {
     settings.rank = given["rank"].cast<std::optional<int>>();
     settings.smooth_nm = given["smooth_nm"].cast<std::optional<double>>();
     settings.spill_nm = given["spill_nm"].cast<std::optional<double>>();
+    settings.mask = mask_rules_from_text(given["mask"].cast<std::string>());
     settings.anti_stokes = given["anti_stokes"].cast<bool>();
     settings.unknown = unknown_layers_from_names(given["unknown"].cast<std::vector<std::string>>());
     settings.seed = given["seed"].cast<unsigned>();
@@ -123,6 +124,14 @@ void bind_fit(py::module_& module) {
             "matrix",
             [](const Fit& fit) { return std::make_shared<ReradiationMatrix>(fit.result.matrix); })
         .def_property_readonly("sigma", [](const Fit& fit) { return fit.result.sigma; })
+        .def_property_readonly("masked",
+                               [](const Fit& fit) -> Eigen::MatrixXd {
+                                   const FitResult& result = fit.result;
+                                   return result.mask.any()
+                                              ? result.mask.entries
+                                              : Eigen::MatrixXd::Zero(result.matrix.values.rows(),
+                                                                      result.matrix.values.cols());
+                               })
         .def_property_readonly("emission", [](const Fit& fit) { return fit.result.emission.value; })
         .def_property_readonly("excitation",
                                [](const Fit& fit) { return fit.result.excitation.value; })

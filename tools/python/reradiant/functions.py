@@ -190,9 +190,9 @@ def synth(recipe: Any, *, seed: int = 0, folder: Any = None) -> Synthetic:
 
 def fit(data: Any, *, model: str = "factors", rank: Optional[int] = None,
         smooth_nm: Optional[float] = None, spill_nm: Optional[float] = None, loss: str = "none",
-        stack: Optional[Stack] = None, unknown: Sequence[str] = (), anti_stokes: bool = False,
-        seed: int = 0, most_seconds: float = 60.0, most_iterations: int = 400,
-        threads: int = 1) -> Fit:
+        mask: str = "auto", stack: Optional[Stack] = None, unknown: Sequence[str] = (),
+        anti_stokes: bool = False, seed: int = 0, most_seconds: float = 60.0,
+        most_iterations: int = 400, threads: int = 1) -> Fit:
     """Fits a re-radiation matrix to bispectral data, bare or through a stack.
 
     Parameters
@@ -201,6 +201,11 @@ def fit(data: Any, *, model: str = "factors", rank: Optional[int] = None,
     model : "factors", "gaussians" or "matrix"
     rank : int
         Terms, 1 to 4 factors or 1 to 24 gaussians; by evidence when left out.
+    mask : str
+        Entries that count as not measured: "auto" (scatter of the monochromators that stands out),
+        "none", or a list such as "first:20,second:15,third:10,half:10" (+- nm about emission = 1,
+        2, 3, 1/2 x excitation; never the diagonal) and "box:300-350x500-560" (excitation x
+        emission).
     stack : Stack
         What lay above the sample; `unknown` of "thickness", "absorption", "ior" is fitted too.
     most_seconds, most_iterations
@@ -222,6 +227,7 @@ def fit(data: Any, *, model: str = "factors", rank: Optional[int] = None,
         "smooth_nm": None if smooth_nm is None else _checks.number("smooth_nm", smooth_nm, 0),
         "spill_nm": None if spill_nm is None else _checks.number("spill_nm", spill_nm, 0),
         "loss": _checks.choice("loss", loss, ["none", "huber", "cauchy"]),
+        "mask": _checks.text("mask", mask),
         "stack": _stack(stack),
         "unknown": [_checks.choice(f"unknown[{k}]", name, ["thickness", "absorption", "ior"])
                     for k, name in enumerate([unknown] if isinstance(unknown, str) else unknown)],

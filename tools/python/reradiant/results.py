@@ -162,6 +162,11 @@ class Fit:
         return self._fit.sigma
 
     @property
+    def masked(self) -> np.ndarray:
+        """True for entries that `mask` took as not measured, (emission, excitation)."""
+        return self._fit.masked > 0
+
+    @property
     def emission(self) -> np.ndarray:
         """(bands, terms), each with integral 1 over the emission, 1/nm; empty for `matrix`."""
         return self._fit.emission
