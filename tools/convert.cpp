@@ -39,6 +39,19 @@ void refuse_form_options(const ConvertOptions& options, const char* why) {
                           "leave them out, or write a .csv of a re-radiation matrix");
 }
 
+/// Nothing is warned about while it lives: what is written and read for trial is warned about where
+/// it is meant.
+class Silence {
+public:
+    Silence() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
+    ~Silence() { spdlog::set_level(level_); }
+    Silence(const Silence&) = delete;
+    Silence& operator=(const Silence&) = delete;
+
+private:
+    spdlog::level::level_enum level_;
+};
+
 using FileAction = std::function<void(const std::filesystem::path&)>;
 
 /// Writes what loads again, which a copy among the temporary files shows.
@@ -51,8 +64,9 @@ void write_if_it_loads(const ConvertOptions& options, const FileAction& write,
         std::filesystem::remove(*file, ignored);
     };
     const std::unique_ptr<const std::filesystem::path, decltype(remove)> removed(&copy, remove);
-    write(copy);
     try {
+        const Silence silence;
+        write(copy);
         read(copy);
     } catch (const Error& error) {
         throw_input_error({options.in.string()},
@@ -92,18 +106,6 @@ void convert_spectrum(const ConvertOptions& options) {
         [&](const auto& file) { write_spectrum(file, table.columns[0], table.columns[1]); },
         [](const auto& file) { read_spectrum(file); });
 }
-
-/// Nothing is warned about while it lives: what is read a second time has been warned about before.
-class Silence {
-public:
-    Silence() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
-    ~Silence() { spdlog::set_level(level_); }
-    Silence(const Silence&) = delete;
-    Silence& operator=(const Silence&) = delete;
-
-private:
-    spdlog::level::level_enum level_;
-};
 
 /// Refuses what would not load: in the XML, where its place is known, then as it would be written.
 void check_scene(const ConvertOptions& options, const std::string& text) {

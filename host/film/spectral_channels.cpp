@@ -6,7 +6,7 @@ std::string spectral_channel_name(double wavelength_nm) {
     return "S0." + wavelength_name(wavelength_nm);
 }
 
-std::optional<NamedWavelength> band_of_channel(std::string_view name) {
+std::optional<RoundedWavelength> band_of_channel(std::string_view name) {
     if (!name.starts_with("S0."))
         return std::nullopt;
     name.remove_prefix(3);

@@ -12,6 +12,6 @@ namespace reradiant {
 std::string spectral_channel_name(double wavelength_nm);
 
 /// Wavelength of an S0 channel; empty for any other name.
-std::optional<NamedWavelength> band_of_channel(std::string_view name);
+std::optional<RoundedWavelength> band_of_channel(std::string_view name);
 
 } // namespace reradiant

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 /// A band's channel in a file.
 struct BandChannel {
-    NamedWavelength wavelength;
+    RoundedWavelength wavelength;
     std::string name;
 };
 
@@ -89,17 +89,17 @@ WavelengthGrid grid_of(const fs::path& file, const Imf::Header& header,
         const WavelengthGrid grid{first->value(), step->value(), static_cast<int>(bands.size())};
         bool agrees = true;
         for (int band = 0; band < grid.count; ++band) {
-            const NamedWavelength& named = bands[static_cast<std::size_t>(band)].wavelength;
+            const RoundedWavelength& named = bands[static_cast<std::size_t>(band)].wavelength;
             agrees = agrees && std::abs(grid.centre_nm(band) - named.nm) <= 1e-6;
         }
         if (agrees)
             return grid;
     }
-    std::vector<NamedWavelength> centres;
+    std::vector<RoundedWavelength> centres;
     for (const BandChannel& band : bands)
         centres.push_back(band.wavelength);
     try {
-        return grid_from_names(centres);
+        return grid_from_rounded_centres(centres);
     } catch (const std::invalid_argument& error) {
         refuse(file, fmt::format("spectral channels are missing or uneven: {}", error.what()),
                "the S0 channels must ascend in equal steps");

@@ -56,14 +56,15 @@ std::vector<int> sort_axis(std::vector<PlacedWavelength>& axis, const char* axis
 
 WavelengthGrid axis_grid(const std::vector<PlacedWavelength>& axis, const char* axis_name,
                          double step_of_single_nm) {
-    std::vector<double> centres_nm;
+    // A number that ends with zeros may have lost them: the longest says how all were rounded.
     double rounding_nm = std::numeric_limits<double>::infinity();
-    for (const PlacedWavelength& wavelength : axis) {
-        centres_nm.push_back(wavelength.nm);
+    for (const PlacedWavelength& wavelength : axis)
         rounding_nm = std::min(rounding_nm, wavelength.rounding_nm);
-    }
+    std::vector<RoundedWavelength> centres;
+    for (const PlacedWavelength& wavelength : axis)
+        centres.push_back({wavelength.nm, rounding_nm});
     try {
-        return grid_from_rounded_centres(centres_nm, rounding_nm, step_of_single_nm);
+        return grid_from_rounded_centres(centres, step_of_single_nm);
     } catch (const std::invalid_argument& error) {
         const std::size_t at = axis.size() > 2 ? first_uneven(axis) : 0;
         throw_input_error(axis.empty() ? SourcePosition{} : axis[at].position,

@@ -41,11 +41,11 @@ constexpr std::size_t most_channels_elsewhere = 1024;
 
 struct Channel {
     std::string name;
-    NamedWavelength excitation, emission;
+    RoundedWavelength excitation, emission;
     float value = 0.0f;
 };
 /// Wavelengths of an axis, ascending.
-using Axis = std::map<double, NamedWavelength>;
+using Axis = std::map<double, RoundedWavelength>;
 
 std::string channel_name(double excitation_nm, double emission_nm, bool diagonal) {
     return diagonal ? "T." + wavelength_name(emission_nm)
@@ -127,11 +127,11 @@ WavelengthGrid grid_of(const Imf::Header& header, const std::string& axis_name, 
         throw_input_error(position,
                           fmt::format("the step of the only {} band is not given", axis_name),
                           fmt::format("add the attribute {}StepNm (double)", prefix));
-    std::vector<NamedWavelength> wavelengths;
+    std::vector<RoundedWavelength> wavelengths;
     for (const auto& [ignored, wavelength] : axis)
         wavelengths.push_back(wavelength);
     try {
-        return grid_from_names(wavelengths, step_nm);
+        return grid_from_rounded_centres(wavelengths, step_nm);
     } catch (const std::invalid_argument& error) {
         throw_input_error(position, fmt::format("{} wavelengths: {}", axis_name, error.what()),
                           "bands must be equally spaced");

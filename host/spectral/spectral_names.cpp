@@ -76,20 +76,9 @@ std::optional<double> take_unit(std::string_view& text, bool& is_frequency) {
     return std::nullopt;
 }
 
-bool fits(const WavelengthGrid& grid, const std::vector<NamedWavelength>& wavelengths,
-          double roundings) {
-    for (int band = 0; band < grid.count; ++band) {
-        const NamedWavelength& named = wavelengths[static_cast<std::size_t>(band)];
-        const double allowed = roundings * named.rounding_nm * (1.0 + 1e-6); // ties
-        if (!(std::abs(named.nm - grid.centre_nm(band)) <= allowed))
-            return false;
-    }
-    return true;
-}
-
 } // namespace
 
-std::optional<NamedWavelength> take_named_wavelength(std::string_view& text) {
+std::optional<RoundedWavelength> take_named_wavelength(std::string_view& text) {
     std::string_view rest = text;
     const auto number = take_number(rest);
     bool is_frequency = false;
@@ -98,7 +87,7 @@ std::optional<NamedWavelength> take_named_wavelength(std::string_view& text) {
         return std::nullopt;
     // 380 nm is 380, not 380 * 1e-9 * 1e9.
     const double to_nm = *factor == 1e-9 ? 1.0 : *factor * 1e9;
-    NamedWavelength named{number->value * to_nm, number->half_unit * to_nm};
+    RoundedWavelength named{number->value * to_nm, number->half_unit * to_nm};
     if (is_frequency) {
         const double frequency_hz = number->value * *factor;
         named.nm = speed_of_light_nm_hz / frequency_hz;
@@ -114,35 +103,6 @@ std::string wavelength_name(double wavelength_nm) {
     std::string text = fmt::format("{:.6f}nm", wavelength_nm); // fmt knows no locale
     std::replace(text.begin(), text.end(), '.', ',');
     return text;
-}
-
-WavelengthGrid grid_from_names(const std::vector<NamedWavelength>& wavelengths,
-                               double step_of_single_nm) {
-    constexpr int most_parts = 64;
-    constexpr double most_rounding_in_steps = 0.125;
-    std::vector<double> centres_nm;
-    double rounding_nm = 0.0;
-    for (const NamedWavelength& named : wavelengths) {
-        centres_nm.push_back(named.nm);
-        rounding_nm = std::max(rounding_nm, named.rounding_nm);
-    }
-    const auto exact = [&] { return grid_from_centres(centres_nm, step_of_single_nm); };
-    const int count = static_cast<int>(centres_nm.size());
-    if (count < 3)
-        return exact();
-    const WavelengthGrid ends{centres_nm.front(),
-                              (centres_nm.back() - centres_nm.front()) / (count - 1), count};
-    // Both ends are rounded too: what lies between may be off twice.
-    if (fits(ends, wavelengths, 0.0) || rounding_nm > most_rounding_in_steps * ends.step_nm ||
-        !fits(ends, wavelengths, 2.0))
-        return exact();
-    for (int parts = 1; parts <= most_parts; ++parts) {
-        const WavelengthGrid simple{std::round(ends.from_nm * parts) / parts,
-                                    std::round(ends.step_nm * parts) / parts, count};
-        if (fits(simple, wavelengths, 1.0))
-            return simple;
-    }
-    return ends;
 }
 
 } // namespace reradiant

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <stdexcept>
-
 namespace reradiant {
 
 namespace {
@@ -12,13 +9,6 @@ namespace {
 double nm_of(std::string_view text) {
     const auto named = take_named_wavelength(text);
     return named && text.empty() ? named->nm : 0.0;
-}
-
-std::vector<NamedWavelength> named(const std::vector<double>& nm, double rounding_nm) {
-    std::vector<NamedWavelength> wavelengths;
-    for (const double value : nm)
-        wavelengths.push_back({value, rounding_nm});
-    return wavelengths;
 }
 
 } // namespace
@@ -53,25 +43,6 @@ TEST(SpectralNames, OtherTextsAreNoWavelengths) {
     std::string_view two = "380nm.520nm";
     EXPECT_EQ(take_named_wavelength(two)->nm, 380.0);
     EXPECT_EQ(two, ".520nm");
-}
-
-TEST(SpectralNames, GridsAreFoundThroughTheRoundingOfTheirNames) {
-    std::vector<double> pbrt, thirds;
-    for (int band = 0; band < 16; ++band) {
-        pbrt.push_back(std::nearbyint((374.6875 + 29.375 * band) * 1e3) / 1e3);
-        thirds.push_back(std::nearbyint((383.0 + 1.0 / 3.0 + 10.0 / 3.0 * band) * 1e2) / 1e2);
-    }
-    EXPECT_EQ(grid_from_names(named(pbrt, 5e-4)), (WavelengthGrid{374.6875, 29.375, 16}));
-    EXPECT_EQ(grid_from_names(named(thirds, 5e-3)), (WavelengthGrid{1150.0 / 3.0, 10.0 / 3.0, 16}));
-    EXPECT_EQ(grid_from_names(named({380, 390, 400}, 0.5)), (WavelengthGrid{380, 10, 3}));
-}
-
-TEST(SpectralNames, MissingBandsAreNotTakenForRounding) {
-    EXPECT_THROW(grid_from_names(named({400, 401, 403}, 0.5)), std::invalid_argument);
-    EXPECT_THROW(grid_from_names(named({400, 410, 430}, 0.5)), std::invalid_argument);
-    EXPECT_THROW(grid_from_names(named({400, 410.1, 420}, 0.01)), std::invalid_argument);
-    EXPECT_THROW(grid_from_names(named({400, 400}, 0.5)), std::invalid_argument);
-    EXPECT_THROW(grid_from_names({}), std::invalid_argument);
 }
 
 } // namespace reradiant

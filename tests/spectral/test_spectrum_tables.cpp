@@ -1,6 +1,5 @@
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/number_table.h"
-#include "host/spectral/rounded_grid.h"
 #include "tests/spectral/refusal.h"
 #include "tests/spectral/scratch_folder.h"
 
@@ -152,21 +151,4 @@ TEST_F(SpectrumTables, Case68MarksAndLineEndsOfOtherSystems) {
                     "400,x\n"),
               (std::pair{1, 5}));
     EXPECT_EQ(place("400,0.1\n\x1a\n500,0.3\n").first, 2); // in the middle it is no end
-}
-
-TEST_F(SpectrumTables, RoundedCentresBecomeTheGridTheyCameFrom) {
-    const auto grid = [](std::vector<double> nm, double rounding) {
-        return grid_from_rounded_centres(nm, rounding);
-    };
-    EXPECT_EQ(grid({380, 383.33, 386.67, 390}, 0.005), (WavelengthGrid{380, 10.0 / 3.0, 4}));
-    // Cut out of the middle, the ends are rounded too.
-    EXPECT_EQ(grid({383.33, 386.67, 390, 393.33}, 0.005),
-              (WavelengthGrid{1150.0 / 3.0, 10.0 / 3.0, 4}));
-    EXPECT_EQ(grid({380, 383, 387, 390}, 0.5), (WavelengthGrid{380, 10.0 / 3.0, 4}));
-    EXPECT_EQ(grid({380, 383, 385, 388, 390, 393}, 0.5), (WavelengthGrid{380, 2.5, 6}));
-    EXPECT_EQ(grid({400, 410, 420}, 0.5), (WavelengthGrid{400, 10, 3}));
-    EXPECT_EQ(grid({400.1, 402.6, 405.1}, 0.05), (WavelengthGrid{400.1, 2.5, 3}));
-    for (const auto& [nm, rounding] : std::vector<std::pair<std::vector<double>, double>>{
-             {{400, 410, 425}, 0.5}, {{400, 401, 403}, 0.5}, {{400, 410, 420.2, 430}, 0.05}})
-        EXPECT_THROW(grid_from_rounded_centres(nm, rounding), std::invalid_argument) << nm[2];
 }
