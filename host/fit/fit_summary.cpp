@@ -26,6 +26,8 @@ nlohmann::ordered_json fit_summary(const FitResult& result) {
                                    {"reduced_chi_squared", result.reduced_chi_squared},
                                    {"parameters", result.parameters},
                                    {"covariance_rank", result.covariance_rank},
+                                   {"within_noise", result.shortfall.empty()},
+                                   {"shortfall", result.shortfall},
                                    {"notes", result.notes},
                                    {"warnings", result.warnings}};
     if (result.stack) {
