@@ -9,6 +9,13 @@ namespace {
 constexpr double tolerance = 1e-7;
 constexpr int most_rounds = 40;
 
+void take_misfit(const FittedModel& model, const FitTarget& target, const PhotonPenalty& penalty,
+                 ModelFit& fit) {
+    const Eigen::MatrixXd matrix = model.matrix(fit.parameters);
+    fit.chi_squared = target.chi_squared(matrix);
+    fit.diagonal_misfit = penalty.misfit(target.photon_sums(matrix));
+}
+
 } // namespace
 
 ModelFit minimise_within_budget(const FittedModel& model, const FitTarget& target,
@@ -24,14 +31,14 @@ ModelFit minimise_within_budget(const FittedModel& model, const FitTarget& targe
         fit.trace.append(minimise_non_negative(model, fit.parameters, settings, begin));
         const Eigen::VectorXd sums = target.photon_sums(model.matrix(fit.parameters));
         // The tolerance is a share of a photon, which is 1 / scale here.
-        if (!penalty.update(sums, target.budget, strength, tolerance / target.scale)) {
-            fit.chi_squared = target.chi_squared(model.matrix(fit.parameters));
+        if (!penalty.update(sums, strength, tolerance / target.scale)) {
+            take_misfit(model, target, penalty, fit);
             return fit;
         }
         if (!fit.trace.converged)
             break;
     }
-    fit.chi_squared = target.chi_squared(model.matrix(fit.parameters));
+    take_misfit(model, target, penalty, fit);
     if (fit.trace.converged)
         fit.trace.stop_reason = "the photon balance was not reached";
     fit.trace.converged = false;

@@ -12,7 +12,8 @@ namespace reradiant {
 struct ModelFit {
     Eigen::VectorXd parameters;
     SolveTrace trace;
-    double chi_squared = 0.0; ///< of the data alone
+    double chi_squared = 0.0;     ///< of the data alone
+    double diagonal_misfit = 0.0; ///< PhotonPenalty::misfit
 };
 
 /// Minimises a model whose photon sums must stay within the target's budget: rounds of

@@ -17,6 +17,9 @@ using Vector = Eigen::VectorXd;
 
 constexpr double determined = 1e-7; ///< of the largest singular value
 constexpr double held_beyond = 2.0; ///< standard errors
+/// So many data an estimate of the noise from neighbours counts as beside the residuals, which say
+/// little where nearly as many numbers are fitted as there are data.
+constexpr double data_of_estimate = 16.0;
 
 /// Weight that a robust loss leaves to every entry (iteratively reweighted least squares).
 Matrix robust_weights(const Matrix& weighted_residual, RobustLoss loss) {
@@ -30,21 +33,37 @@ Matrix robust_weights(const Matrix& weighted_residual, RobustLoss loss) {
     return weights;
 }
 
-/// Rows of used entries, weighted, and one row for every active photon balance.
-Matrix data_jacobian(const Matrix& entries, const Matrix& weights, const FitTarget& target,
-                     const PhotonPenalty& penalty) {
-    const Eigen::Index used = (weights.array() > 0.0).count();
-    const Eigen::Index active = (penalty.multiplier.array() > 0.0).count();
-    Matrix rows(used + active, entries.cols());
+/// One row for every photon balance that is active at these sums.
+Matrix balance_jacobian(const Matrix& entries, const FitTarget& target,
+                        const PhotonPenalty& penalty, const Vector& sums) {
+    const Eigen::Index bands = target.value.rows();
+    Matrix rows(sums.size(), entries.cols());
+    Eigen::Index active = 0;
+    for (Eigen::Index i = 0; i < sums.size(); ++i) {
+        const auto slopes = penalty.slopes(i, sums(i));
+        if (const double weight = std::hypot(slopes[0], slopes[1]); weight > 0.0)
+            rows.row(active++) =
+                weight * target.photons.col(i).transpose() * entries.middleRows(i * bands, bands);
+    }
+    return rows.topRows(active);
+}
+
+/// Rows of used entries, weighted, and those of the photon balances.
+Matrix data_jacobian(const Matrix& entries, const Matrix& weights, const Matrix& balances) {
+    Matrix rows((weights.array() > 0.0).count() + balances.rows(), entries.cols());
     Eigen::Index next = 0;
     for (Eigen::Index k = 0; k < weights.size(); ++k)
         if (weights(k) > 0.0)
             rows.row(next++) = weights(k) * entries.row(k);
-    const Eigen::Index bands = target.value.rows();
-    for (Eigen::Index i = 0; i < target.value.cols(); ++i)
-        if (penalty.multiplier(i) > 0.0)
-            rows.row(next++) = std::sqrt(penalty.strength(i)) * target.photons.col(i).transpose() *
-                               entries.middleRows(i * bands, bands);
+    rows.bottomRows(balances.rows()) = balances;
+    return rows;
+}
+
+Matrix stacked_rows(const Matrix& above, const Matrix& below) {
+    Matrix rows(above.rows() + below.rows(), below.cols());
+    if (above.rows() > 0)
+        rows.topRows(above.rows()) = above;
+    rows.bottomRows(below.rows()) = below;
     return rows;
 }
 
@@ -60,17 +79,18 @@ Vector seen_residuals(const Matrix& residual, const Matrix& weights, const FitTa
 }
 
 /// Replaces the covariance of an estimate gain * entries, gain = C J^T W, by what shared errors of
-/// the entries (in units of `unit`) and the prior make of it.
-void share_errors(const Matrix& entries, const Matrix& weights, const Matrix& prior,
+/// the entries (in units of `unit`) make of it, with what has errors of its own beside them: the
+/// prior and the photon balances.
+void share_errors(const Matrix& entries, const Matrix& weights, const Matrix& beside,
                   const SharedErrors& errors, double unit, double variance,
                   Covariance& covariance) {
     const Vector squared = weights.cwiseAbs2().reshaped();
     const Matrix pull = squared.asDiagonal() * (entries * covariance.root);
     const Matrix of_data =
         std::sqrt(variance) * unit * errors.root(covariance.root * pull.transpose() / variance);
-    const Matrix of_prior = covariance.root * (prior * covariance.root).transpose();
-    covariance.root.resize(of_data.rows(), of_data.cols() + of_prior.cols());
-    covariance.root << of_data, of_prior;
+    const Matrix of_others = covariance.root * (beside * covariance.root).transpose();
+    covariance.root.resize(of_data.rows(), of_data.cols() + of_others.cols());
+    covariance.root << of_data, of_others;
 }
 
 std::vector<bool> firmly_at_zero(const TermModel& model, const Vector& parameters,
@@ -206,7 +226,9 @@ Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitT
     const Matrix residual =
         (model.matrix(fit.parameters) - target.value).cwiseProduct(target.weight);
     const Matrix weights = target.weight.cwiseProduct(robust_weights(residual, loss));
-    const Matrix jacobian = data_jacobian(entries, weights, target, penalty);
+    const Matrix balances = balance_jacobian(entries, target, penalty,
+                                             target.photon_sums(model.matrix(fit.parameters)));
+    const Matrix jacobian = data_jacobian(entries, weights, balances);
     const Vector seen = seen_residuals(residual, weights, target, jacobian.rows());
     const double used = (target.weight.array() > 0.0).cast<double>().sum();
     const std::vector<bool> held =
@@ -216,7 +238,9 @@ Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitT
         return seen.squaredNorm() / std::max(1.0, used - numbers);
     };
     const auto variance_of = [&](double numbers) {
-        return noise_is_estimated ? reduced(numbers) : std::max(1.0, reduced(numbers));
+        return noise_is_estimated ? (data_of_estimate + seen.squaredNorm()) /
+                                        (data_of_estimate + std::max(1.0, used - numbers))
+                                  : std::max(1.0, reduced(numbers));
     };
     double numbers = static_cast<double>((fit.parameters.array() > 0.0).count());
     Covariance covariance;
@@ -229,8 +253,8 @@ Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitT
     }
     covariance.effective = numbers;
     if (errors != nullptr)
-        share_errors(entries, weights, prior, *errors, 1.0 / target.scale, variance_of(numbers),
-                     covariance);
+        share_errors(entries, weights, stacked_rows(prior, balances), *errors, 1.0 / target.scale,
+                     variance_of(numbers), covariance);
     return covariance;
 }
 

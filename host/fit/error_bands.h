@@ -30,7 +30,7 @@ Covariance covariance_of(const Eigen::MatrixXd& jacobian, const std::vector<bool
 
 /// Covariance of a model at its optimum. Parameters at zero that the data push against zero by more
 /// than two standard errors are held; those that are there by chance are not, so that their error
-/// bands are not empty. Active photon balances count as exact, priors as they are: what the data do
+/// bands are not empty. Active photon balances count as data, priors as they are: what the data do
 /// not determine is as uncertain as its prior. `free` and `rank` are of the data alone. With
 /// `errors` those of the entries are shared, not independent as the weights suppose (White 1980).
 Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitTarget& target,

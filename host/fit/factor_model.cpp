@@ -18,6 +18,7 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Basis functions that are not zero at a band.
 struct Support {
@@ -91,18 +92,17 @@ private:
 class ColumnPenalty final : public ceres::CostFunction {
 public:
     ColumnPenalty(int rank, const SmoothBasis& emission, Support excitation, Vector photons,
-                  double budget, Eigen::Index column, const PhotonPenalty& penalty)
+                  Eigen::Index column, const PhotonPenalty& penalty)
         : rank_(rank), excitation_(std::move(excitation)),
-          share_(emission.values.transpose() * photons), budget_(budget), column_(column),
-          penalty_(penalty) {
-        set_num_residuals(1);
+          share_(emission.values.transpose() * photons), column_(column), penalty_(penalty) {
+        set_num_residuals(PhotonPenalty::residuals_of_a_column);
         for (Eigen::Index b = 0; b < share_.size(); ++b)
             mutable_parameter_block_sizes()->push_back(rank);
         for (std::size_t b = 0; b < excitation_.values.size(); ++b)
             mutable_parameter_block_sizes()->push_back(rank);
     }
 
-    bool Evaluate(double const* const* parameters, double* residual,
+    bool Evaluate(double const* const* parameters, double* residuals,
                   double** jacobians) const override {
         const auto split = static_cast<std::size_t>(share_.size());
         TermVector e = TermVector::Zero(rank_);
@@ -111,18 +111,20 @@ public:
                  Eigen::Map<const Vector>(parameters[a], rank_);
         const TermVector x =
             curve_values(excitation_, rank_, [&](std::size_t b) { return parameters[split + b]; });
-        const double excess = e.dot(x) - budget_;
-        residual[0] = penalty_.residual(column_, excess);
+        const auto at = penalty_.residuals(column_, e.dot(x));
+        std::copy(at.begin(), at.end(), residuals);
         if (jacobians == nullptr)
             return true;
-        const double slope = penalty_.slope(column_, excess);
+        const auto slopes = penalty_.slopes(column_, e.dot(x));
+        const Eigen::Map<const Eigen::Vector2d> slope(slopes.data());
         for (std::size_t a = 0; a < split; ++a)
             if (jacobians[a] != nullptr)
-                Eigen::Map<Vector>(jacobians[a], rank_) =
-                    slope * share_(static_cast<Eigen::Index>(a)) * x;
+                Eigen::Map<RowMajor>(jacobians[a], slope.size(), rank_) =
+                    slope * share_(static_cast<Eigen::Index>(a)) * x.transpose();
         for (std::size_t b = 0; b < excitation_.values.size(); ++b)
             if (jacobians[split + b] != nullptr)
-                Eigen::Map<Vector>(jacobians[split + b], rank_) = slope * excitation_.values[b] * e;
+                Eigen::Map<RowMajor>(jacobians[split + b], slope.size(), rank_) =
+                    slope * excitation_.values[b] * e.transpose();
         return true;
     }
 
@@ -130,7 +132,6 @@ private:
     int rank_;
     Support excitation_;
     Vector share_; ///< photons of column i that a unit of every emission coefficient stands for
-    double budget_;
     Eigen::Index column_;
     const PhotonPenalty& penalty_;
 };
@@ -192,8 +193,6 @@ private:
     double width_;
 };
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 } // namespace
 
 FactorModel::FactorModel(const FitTarget& target, int rank, const SmoothBasis& emission,
@@ -245,13 +244,12 @@ void FactorModel::add_residuals(ceres::Problem& problem, const std::vector<doubl
                 new EntryResidual(rank_, e, x, target_.value(o, i), target_.weight(o, i)), loss,
                 used);
         }
-        if (penalty_.strength(i) > 0.0) {
+        if (penalty_.watches(i)) {
             std::vector<double*> used(blocks.begin(), blocks.begin() + emission_.size());
             append(used, x, first_excitation);
             const Vector photons = target_.photons.col(i).cwiseProduct(target_.allowed.col(i));
-            problem.AddResidualBlock(
-                new ColumnPenalty(rank_, emission_, x, photons, target_.budget(i), i, penalty_),
-                nullptr, used);
+            problem.AddResidualBlock(new ColumnPenalty(rank_, emission_, x, photons, i, penalty_),
+                                     nullptr, used);
         }
     }
 }

@@ -40,6 +40,16 @@ void check_model(const FitSettings& settings) {
             fmt::format("{} takes 1 to {} terms", fit_model_name(settings.model), most));
 }
 
+/// Numbers that are not zero and that used entries depend on, but for those chosen at will.
+Eigen::Index numbers_to_determine(const FittedCandidate& candidate, const FitTarget& target) {
+    const TermModel& model = *candidate.model;
+    const Eigen::VectorXd seen =
+        (target.weight.reshaped().array() > 0.0).cast<double>().matrix().transpose() *
+        model.entry_jacobian(candidate.fit.parameters).cwiseAbs();
+    return ((candidate.fit.parameters.array() != 0.0) && (seen.array() > 0.0)).count() -
+           model.terms() * model.free_units();
+}
+
 void refuse_too_few_data(const BispectralData& data, Eigen::Index used, Eigen::Index needed) {
     if (used < needed)
         throw_input_error(
@@ -65,11 +75,12 @@ void set_error_bands(const FittedCandidate& candidate, const PreparedTarget& pre
     NormalisedCurves curves = normalised_curves(model, parameters, covariance, prepared.target);
     result.emission = std::move(curves.emission);
     result.excitation = std::move(curves.excitation);
-    result.quantum_yield =
-        quantum_yields(emitted_photons(model, parameters, jacobian, covariance, prepared.target),
-                       prepared.diagonal, prepared.diagonal_sigma, result.warnings);
-    const double freedom = static_cast<double>(prepared.target.used_count()) - covariance.effective;
-    result.reduced_chi_squared = candidate.fit.chi_squared / std::max(1.0, freedom);
+    result.quantum_yield = quantum_yields(
+        emitted_photons(model, parameters, jacobian, covariance, prepared.target),
+        balanced_diagonal(prepared, result.matrix), prepared.diagonal_sigma, result.warnings);
+    judge_residuals(prepared, settings, candidate.fit.chi_squared,
+                    static_cast<double>(prepared.target.used_count()) - covariance.effective,
+                    result);
     result.parameters = covariance.free - model.terms() * model.free_units();
     result.covariance_rank = std::min(covariance.rank, result.parameters);
     if (result.covariance_rank < result.parameters)
@@ -90,14 +101,13 @@ void take_terms(const BispectralData& data, const FittedCandidate& candidate,
                 const PreparedTarget& prepared, const FitSettings& settings, FitResult& result) {
     result.trace = candidate.fit.trace;
     const auto used = prepared.target.used_count();
-    const Eigen::Index needed = (candidate.fit.parameters.array() != 0.0).count();
     if (!candidate.model) {
-        result.reduced_chi_squared =
-            candidate.fit.chi_squared / static_cast<double>(std::max<Eigen::Index>(1, used));
+        judge_residuals(prepared, settings, candidate.fit.chi_squared, static_cast<double>(used),
+                        result);
         result.notes.push_back("no fluorescence is seen in the data beyond their noise");
         return;
     }
-    refuse_too_few_data(data, used, needed);
+    refuse_too_few_data(data, used, numbers_to_determine(candidate, prepared.target));
     result.rank = candidate.model->terms();
     result.spacing_nm = candidate.spacing_nm;
     result.emission_knots_nm = centres_of(candidate.emission_knots, data.emission);
@@ -119,20 +129,21 @@ void add_shared_errors(const PreparedTarget& prepared, Matrix& sigma) {
                           std::max(0.0, all(k) - std::pow(target.scale / target.weight(k), 2)));
 }
 
-void take_matrix(const MatrixFit& fit, const PreparedTarget& prepared, FitResult& result) {
+void take_matrix(const MatrixFit& fit, const PreparedTarget& prepared, const FitSettings& settings,
+                 FitResult& result) {
     result.trace = fit.fit.trace;
     result.bytes = 4 * fit.stored_numbers;
     result.matrix.values = prepared.target.scale * fit.value;
     result.sigma = prepared.target.scale * fit.sigma;
     if (prepared.errors)
         add_shared_errors(prepared, result.sigma);
-    const double freedom =
-        std::max(1.0, static_cast<double>(prepared.target.used_count()) - fit.effective_numbers);
-    result.reduced_chi_squared = fit.fit.chi_squared / freedom;
+    judge_residuals(prepared, settings, fit.fit.chi_squared,
+                    static_cast<double>(prepared.target.used_count()) - fit.effective_numbers,
+                    result);
     result.parameters = static_cast<int>(fit.stored_numbers);
     result.covariance_rank = static_cast<int>(std::lround(fit.effective_numbers));
-    result.quantum_yield =
-        quantum_yields(fit.emitted, prepared.diagonal, prepared.diagonal_sigma, result.warnings);
+    result.quantum_yield = quantum_yields(fit.emitted, balanced_diagonal(prepared, result.matrix),
+                                          prepared.diagonal_sigma, result.warnings);
 }
 
 void take_model(const BispectralData& data, const PreparedTarget& prepared,
@@ -144,7 +155,7 @@ void take_model(const BispectralData& data, const PreparedTarget& prepared,
         take_terms(data, dark_candidate(target, evidence), prepared, settings, result);
     else if (settings.model == FitModel::Matrix)
         take_matrix(fit_matrix(target, settings, prepared.noise_is_estimated, begin), prepared,
-                    result);
+                    settings, result);
     else
         take_terms(data,
                    settings.model == FitModel::Factors
@@ -184,6 +195,7 @@ FitResult fit_bare(const SubstrateData& substrate, const FitSettings& settings,
     prepared.errors = substrate.errors;
     FitResult result = empty_result(data, prepared, settings);
     take_model(data, prepared, settings, begin, result);
+    add_rounding(prepared, result);
     pass_diagonal(prepared, result);
     measure_errors(prepared, result);
     return result;

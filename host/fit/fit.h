@@ -63,7 +63,8 @@ struct FitResult {
     double spacing_nm = 0.0; ///< of the splines of `factors`; 0: one number a band
     /// Bands whose values the curves keep, being linear between them; empty: they keep all.
     std::vector<double> emission_knots_nm, excitation_knots_nm;
-    /// Per-band, rows = emission, on the data's grid: model off the diagonal, the data's diagonal.
+    /// Per-band, rows = emission, on the data's grid: model off the diagonal; the data's diagonal,
+    /// lowered within its noise where more photons would leave than arrive.
     ReradiationMatrix matrix;
     Eigen::MatrixXd sigma; ///< standard error of every entry of `matrix`, NaN: unknown
     Eigen::MatrixXd data;  ///< what was fitted (through the layer: of the substrate), NaN: missing
@@ -83,6 +84,8 @@ struct FitResult {
     int parameters = 0, covariance_rank = 0; ///< numbers fitted; of them told apart by the data
     std::optional<StackEstimate> stack;      ///< when something of the stack was unknown
     std::vector<std::string> notes, warnings;
+    /// Empty, or how far residuals are from noise: there is more in the data than in the model.
+    std::string shortfall;
     /// Empty, or why the result must not be used: it did not converge or failed a check.
     std::string failure;
 };

@@ -1,9 +1,12 @@
 #include "host/fit/fit_checks.h"
 
+#include "host/fit/model_selection.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace reradiant {
 
@@ -22,6 +25,42 @@ double anti_stokes_share(const ReradiationMatrix& matrix) {
                 below += std::abs(fluorescent(o, i));
         }
     return all > 0.0 ? below / all : 0.0;
+}
+
+/// An estimate of the noise by the median of differences, which share their data, is worth so much
+/// fewer data than there are: that of 250 entries has a standard error of 12 %.
+constexpr double data_of_an_estimate = 6.0;
+constexpr double certain_noise = std::numeric_limits<double>::infinity();
+
+/// By which the square of a noise may be underestimated that so many data tell: three standard
+/// errors.
+double largest_factor_of(double data) {
+    return 1.0 + 3.0 * std::sqrt(2.0 / data);
+}
+
+/// What every column leaves to its diagonal, which is still zero: energy and photons.
+Eigen::VectorXd room_for_diagonal(const ReradiationMatrix& matrix) {
+    const ColumnBalance balance = column_balance(matrix);
+    Eigen::VectorXd room(matrix.excitation.count);
+    for (Eigen::Index i = 0; i < room.size(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        room(i) = std::max(0.0, 1.0 - std::max(balance.radiant[k], balance.photons[k]));
+    }
+    return room;
+}
+
+/// Says how far the diagonal gave way to what is emitted.
+void note_lowered(const PreparedTarget& prepared, const Eigen::VectorXd& room, FitResult& result) {
+    const Eigen::ArrayXd lowered = (prepared.diagonal - room).array();
+    const Eigen::Index count = (lowered > 0.0).count();
+    if (count == 0)
+        return;
+    const double errors =
+        (lowered > 0.0).select(lowered / prepared.diagonal_sigma.array(), 0.0).maxCoeff();
+    result.notes.push_back(fmt::format(
+        "{} diagonal entries were lowered, by up to {:.2g} ({:.1f} standard errors), so that no "
+        "more photons leave than arrive",
+        count, (lowered > 0.0).select(lowered, 0.0).maxCoeff(), errors));
 }
 
 std::string first_fault(const FitResult& result) {
@@ -48,8 +87,15 @@ std::string first_fault(const FitResult& result) {
 
 } // namespace
 
+Eigen::VectorXd balanced_diagonal(const PreparedTarget& prepared, const ReradiationMatrix& matrix) {
+    const Eigen::ArrayXd measured = prepared.diagonal.array();
+    const Eigen::ArrayXd room = room_for_diagonal(matrix).array();
+    return (room < measured).select(room, measured); // NaN stays
+}
+
 void pass_diagonal(const PreparedTarget& prepared, FitResult& result) {
     const Eigen::VectorXd& diagonal = prepared.diagonal;
+    const Eigen::VectorXd room = room_for_diagonal(result.matrix);
     std::vector<double> nm, known;
     for (Eigen::Index i = 0; i < diagonal.size(); ++i)
         if (std::isfinite(diagonal(i))) {
@@ -64,13 +110,13 @@ void pass_diagonal(const PreparedTarget& prepared, FitResult& result) {
         const bool measured = std::isfinite(diagonal(i));
         bridged += measured ? 0 : 1;
         result.sigma(o, i) = prepared.diagonal_sigma(i);
-        if (measured)
-            result.matrix.values(o, i) = diagonal(i);
-        else
-            result.matrix.values(o, i) =
-                known.empty() ? 0.0
-                              : Spectrum::table(nm, known)(result.matrix.excitation.centre_nm(i));
+        const double value =
+            measured        ? diagonal(i)
+            : known.empty() ? 0.0
+                            : Spectrum::table(nm, known)(result.matrix.excitation.centre_nm(i));
+        result.matrix.values(o, i) = std::min(value, room(i));
     }
+    note_lowered(prepared, room, result);
     if (bridged > 0)
         result.notes.push_back(
             known.empty()
@@ -97,6 +143,43 @@ void measure_errors(const PreparedTarget& prepared, FitResult& result) {
     const auto used = static_cast<double>(std::max<Eigen::Index>(1, prepared.target.used_count()));
     result.rmse = std::sqrt(squares / used);
     result.relative_rmse = whole > 0.0 ? std::sqrt(beyond / whole) : 0.0;
+}
+
+void add_rounding(const PreparedTarget& prepared, FitResult& result) {
+    result.sigma =
+        (prepared.target.allowed.array() > 0.0)
+            .select(
+                (result.sigma.array().square() + prepared.shared_rounding.array().square()).sqrt(),
+                result.sigma.array());
+}
+
+void judge_residuals(const PreparedTarget& prepared, const FitSettings& settings,
+                     double chi_squared, double freedom, FitResult& result) {
+    const double used = static_cast<double>(prepared.target.used_count());
+    freedom = std::max(1.0, freedom);
+    result.reduced_chi_squared = chi_squared / freedom;
+    const double estimate =
+        prepared.noise_is_estimated ? used / data_of_an_estimate : certain_noise;
+    if (residuals_are_noise(chi_squared / largest_factor_of(estimate), used, freedom)) {
+        const double factor =
+            std::isfinite(estimate) ? (estimate + chi_squared) / (estimate + freedom) : 1.0;
+        if (factor > 1.0) {
+            result.noise *= std::sqrt(factor);
+            result.reduced_chi_squared /= factor;
+        }
+        return;
+    }
+    if (settings.loss != RobustLoss::None)
+        return;
+    const bool is_matrix = settings.model == FitModel::Matrix;
+    result.shortfall = fmt::format(
+        "the residuals are {:.2g} times the noise (reduced chi squared {:.4g}), so that the data "
+        "hold more than {}{}",
+        std::sqrt(result.reduced_chi_squared), result.reduced_chi_squared,
+        is_matrix ? "a smooth matrix"
+                  : fmt::format("{} {} of {}", result.rank, result.rank == 1 ? "term" : "terms",
+                                fit_model_name(settings.model)),
+        is_matrix ? "" : "; --model matrix follows them entry by entry");
 }
 
 void check_fit(FitResult& result) {

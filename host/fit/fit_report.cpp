@@ -59,6 +59,8 @@ void add_numbers(HtmlPage& page, const BispectralData& data, const FitResult& re
     if (result.model == FitModel::Factors && result.rank > 0)
         rows.push_back({"functions", functions_text(result)});
     page.table({"", ""}, rows);
+    if (!result.shortfall.empty())
+        page.paragraph("Not done: " + result.shortfall + ".");
     for (const std::string& warning : result.warnings)
         page.paragraph("Warning: " + warning + ".");
     for (const std::string& note : result.notes)

@@ -41,6 +41,8 @@ nlohmann::ordered_json fit_summary(const FitResult& result) {
                                    {"parameters", result.parameters},
                                    {"covariance_rank", result.covariance_rank},
                                    {"mask", mask_summary(result.mask)},
+                                   {"within_noise", result.shortfall.empty()},
+                                   {"shortfall", result.shortfall},
                                    {"notes", result.notes},
                                    {"warnings", result.warnings}};
     if (result.stack) {

@@ -14,7 +14,10 @@ struct FitTarget {
     Eigen::MatrixXd weight;  ///< 1 / standard error, 0: not used (not measured, saturated, spill)
     Eigen::MatrixXd allowed; ///< 1 where the model may emit, else 0
     Eigen::MatrixXd photons; ///< share of a photon that one unit of an entry stands for
-    Eigen::VectorXd budget;  ///< largest photon sum of every excitation column, in units of `scale`
+    // Photon sums of every excitation column, in units of `scale`:
+    Eigen::VectorXd budget;       ///< the largest there can be, that of a black diagonal
+    Eigen::VectorXd spare;        ///< what the measured diagonal leaves
+    Eigen::VectorXd spare_weight; ///< 1 / standard error of `spare`, 0: no diagonal was measured
     double scale = 1.0;
 
     Eigen::Index used_count() const { return (weight.array() > 0.0).count(); }

@@ -8,8 +8,9 @@ namespace reradiant {
 
 namespace {
 
-/// More Gaussians in a row that the evidence is against before none is tried any more.
-constexpr int patience = 2;
+/// More Gaussians in a row that the evidence is against before none is tried any more: while what
+/// is left is noise, and while it is not.
+constexpr int patience = 2, patience_beyond_noise = 6;
 
 Eigen::VectorXd with_one_more(const Eigen::VectorXd& parameters, const WavenumberGaussian& one) {
     Eigen::VectorXd more(parameters.size() + 5);
@@ -21,7 +22,7 @@ Eigen::VectorXd with_one_more(const Eigen::VectorXd& parameters, const Wavenumbe
 FittedCandidate grown(const FitTarget& target, const FitSettings& settings, Evidence evidence,
                       const Eigen::VectorXd& smaller, std::chrono::steady_clock::time_point begin) {
     FittedCandidate next;
-    next.penalty = std::make_unique<PhotonPenalty>(target.value.cols());
+    next.penalty = std::make_unique<PhotonPenalty>(target);
     const auto count = static_cast<int>(smaller.size() / 5);
     const GaussianModel before(target, count, *next.penalty, settings.loss);
     auto model = std::make_unique<GaussianModel>(target, count + 1, *next.penalty, settings.loss);
@@ -48,7 +49,8 @@ FittedCandidate fit_gaussians(const FitTarget& target, const FitSettings& settin
         worse = better ? 0 : worse + 1;
         if (settings.rank || better)
             best = std::move(next);
-        if (!settings.rank && worse > patience)
+        if (!settings.rank && worse > patience &&
+            (worse > patience_beyond_noise || residuals_are_noise(best, target)))
             break;
     }
     return best;

@@ -69,10 +69,10 @@ public:
     GaussianColumnPenalty(int count, const FitTarget& target, Eigen::Index column,
                           const PhotonPenalty& penalty)
         : target_(target), column_(column), penalty_(penalty) {
-        set_num_residuals(1);
+        set_num_residuals(PhotonPenalty::residuals_of_a_column);
         mutable_parameter_block_sizes()->assign(static_cast<std::size_t>(count), 5);
     }
-    bool Evaluate(double const* const* parameters, double* residual,
+    bool Evaluate(double const* const* parameters, double* residuals,
                   double** jacobians) const override {
         const std::size_t count = parameter_block_sizes().size();
         std::vector<Slopes> slopes(count, Slopes{});
@@ -88,13 +88,14 @@ public:
                     slopes[k][j] += photons * one[j];
             }
         }
-        const double excess = sum - target_.budget(column_);
-        residual[0] = penalty_.residual(column_, excess);
-        const double slope = penalty_.slope(column_, excess);
+        const auto at = penalty_.residuals(column_, sum);
+        std::copy(at.begin(), at.end(), residuals);
+        const auto by_sum = penalty_.slopes(column_, sum);
         for (std::size_t k = 0; jacobians != nullptr && k < count; ++k)
             for (std::size_t j = 0; jacobians[k] != nullptr && j < 5; ++j)
-                jacobians[k][j] = slope * slopes[k][j];
-        return std::isfinite(residual[0]);
+                for (std::size_t r = 0; r < by_sum.size(); ++r)
+                    jacobians[k][5 * r + j] = by_sum[r] * slopes[k][j];
+        return std::isfinite(sum);
     }
 
 private:
@@ -172,7 +173,7 @@ void GaussianModel::add_residuals(ceres::Problem& problem,
                                          wavenumber(target_.excitation.centre_nm(i)),
                                          target_.value(o, i), target_.weight(o, i)),
                     loss, blocks);
-        if (penalty_.strength(i) > 0.0)
+        if (penalty_.watches(i))
             problem.AddResidualBlock(new GaussianColumnPenalty(count_, target_, i, penalty_),
                                      nullptr, blocks);
     }

@@ -1,5 +1,7 @@
 #include "host/fit/hidden_bands.h"
 
+#include "host/fit/photon_penalty.h"
+
 #include <algorithm>
 #include <vector>
 
@@ -64,9 +66,11 @@ double filled(const Vector& curve, const std::vector<bool>& known, Eigen::Index 
                      : continued(curve, known, band, right, 1);
 }
 
+/// Of the data and of the diagonal.
 double misfit(const FitTarget& target, const FactorCurves& curves) {
-    return target.chi_squared(
-        (curves.emission * curves.excitation.transpose()).cwiseProduct(target.allowed));
+    const Matrix matrix =
+        (curves.emission * curves.excitation.transpose()).cwiseProduct(target.allowed);
+    return target.chi_squared(matrix) + PhotonPenalty(target).misfit(target.photon_sums(matrix));
 }
 
 /// Fills the hidden bands of one curve of `curves` as far as the data do not object.
@@ -101,7 +105,7 @@ void bridge_hidden_bands(const FitTarget& target, FactorCurves& curves) {
     const Vector sums = target.photon_sums(
         (curves.emission * curves.excitation.transpose()).cwiseProduct(target.allowed));
     for (Eigen::Index i = 0; i < sums.size(); ++i)
-        if (sums(i) > target.budget(i) && curves.excitation.row(i) != fitted.excitation.row(i))
+        if (sums(i) > target.budget(i))
             curves.excitation.row(i) *= target.budget(i) / sums(i);
 }
 

@@ -9,7 +9,8 @@ namespace reradiant {
 /// of what the term emits by them (square sum) lies in entries that were used: columns that were
 /// not measured, and those whose only emission the spill beside the diagonal hides. A gap is
 /// bridged straight; beyond the last band that is known a curve goes on straight if it falls, level
-/// if it rises. Columns keep their photon budget.
+/// if it rises. The data, the diagonal among them, may object, and columns keep
+/// their photon budget.
 void bridge_hidden_bands(const FitTarget& target, FactorCurves& curves);
 
 } // namespace reradiant

@@ -33,7 +33,7 @@ Sparse diagonal_matrix(const Vector& values) {
 
 /// -2 log evidence of a smoothness, up to a constant; infinite where it cannot be computed.
 double evidence_cost(const FitTarget& target, const Smoothness& smoothness) {
-    const PhotonPenalty no_penalty(target.value.cols());
+    const PhotonPenalty no_penalty(target);
     const MatrixModel model(target, smoothness, no_penalty, RobustLoss::None);
     const Vector weights = model.weights(), values = model.values();
     const Sparse prior = model.prior();
@@ -152,7 +152,7 @@ private:
 MatrixFit fit_matrix(const FitTarget& target, const FitSettings& settings, bool noise_is_estimated,
                      std::chrono::steady_clock::time_point begin) {
     const Smoothness smoothness = best_smoothness(target);
-    PhotonPenalty penalty(target.value.cols());
+    PhotonPenalty penalty(target);
     auto model = std::make_shared<MatrixModel>(target, smoothness, penalty, settings.loss);
     MatrixFit result;
     const Vector start = model->values().cwiseMax(0.0);

@@ -4,6 +4,7 @@
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace reradiant {
@@ -40,27 +41,28 @@ private:
 /// Penalty of one excitation column, over its entries.
 class EntryColumnPenalty final : public ceres::CostFunction {
 public:
-    EntryColumnPenalty(std::vector<double> photons, double budget, Eigen::Index column,
+    EntryColumnPenalty(std::vector<double> photons, Eigen::Index column,
                        const PhotonPenalty& penalty)
-        : photons_(std::move(photons)), budget_(budget), column_(column), penalty_(penalty) {
-        set_num_residuals(1);
+        : photons_(std::move(photons)), column_(column), penalty_(penalty) {
+        set_num_residuals(PhotonPenalty::residuals_of_a_column);
         mutable_parameter_block_sizes()->assign(photons_.size(), 1);
     }
-    bool Evaluate(double const* const* parameters, double* residual,
+    bool Evaluate(double const* const* parameters, double* residuals,
                   double** jacobians) const override {
-        double excess = -budget_;
+        double sum = 0.0;
         for (std::size_t k = 0; k < photons_.size(); ++k)
-            excess += photons_[k] * parameters[k][0];
-        residual[0] = penalty_.residual(column_, excess);
+            sum += photons_[k] * parameters[k][0];
+        const auto at = penalty_.residuals(column_, sum);
+        std::copy(at.begin(), at.end(), residuals);
+        const auto slopes = penalty_.slopes(column_, sum);
         for (std::size_t k = 0; jacobians != nullptr && k < photons_.size(); ++k)
-            if (jacobians[k] != nullptr)
-                jacobians[k][0] = penalty_.slope(column_, excess) * photons_[k];
+            for (std::size_t r = 0; jacobians[k] != nullptr && r < slopes.size(); ++r)
+                jacobians[k][r] = slopes[r] * photons_[k];
         return true;
     }
 
 private:
     std::vector<double> photons_;
-    double budget_;
     Eigen::Index column_;
     const PhotonPenalty& penalty_;
 };
@@ -115,9 +117,8 @@ void MatrixModel::add_residuals(ceres::Problem& problem, const std::vector<doubl
             column.push_back(block);
             photons.push_back(target_.photons(o, i));
         }
-        if (penalty_.strength(i) > 0.0 && !column.empty())
-            problem.AddResidualBlock(
-                new EntryColumnPenalty(photons, target_.budget(i), i, penalty_), nullptr, column);
+        if (penalty_.watches(i) && !column.empty())
+            problem.AddResidualBlock(new EntryColumnPenalty(photons, i, penalty_), nullptr, column);
     }
     for (const SmoothnessRow& row : rows_) {
         std::vector<double*> used;

@@ -15,7 +15,7 @@ enum class Evidence {
 };
 
 /// Schwarz's criterion (1978), -2 log evidence up to a constant: chi^2 + p log n, or with the
-/// noise's scale integrated out n log(1 + chi^2 / n) + p log n, where the estimate counts as much
+/// noise's scale integrated out 2 n log(1 + chi^2 / n) + p log n, where the estimate counts as much
 /// as the data. Lower is better.
 double information_criterion(double chi_squared, Eigen::Index parameters, Eigen::Index data,
                              Evidence evidence);
@@ -37,6 +37,19 @@ struct FittedCandidate {
     double spacing_nm = 0.0;
     std::vector<int> emission_knots, excitation_knots; ///< see FitResult
 };
+
+/// Of noise that was estimated from the data, with the error that such an estimate has.
+inline constexpr double largest_reduced_chi_squared = 2.0;
+
+/// Data less the numbers that they determine rather than a prior; at least 1.
+double degrees_of_freedom(const FittedCandidate& candidate, const FitTarget& target);
+
+/// Whether residuals may be noise: they are no larger than it, or their reduced chi squared is at
+/// most largest_reduced_chi_squared, or five standard deviations above 1 for so many degrees of
+/// freedom.
+bool residuals_are_noise(double chi_squared, double data, double freedom);
+/// The same of a candidate, by a tenth less, so that one that passes is not refused in the end.
+bool residuals_are_noise(const FittedCandidate& candidate, const FitTarget& target);
 
 /// No fluorescence at all: what every model is compared with.
 FittedCandidate dark_candidate(const FitTarget& target, Evidence evidence);

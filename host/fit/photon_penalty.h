@@ -1,25 +1,46 @@
 #pragma once
 
+#include "host/fit/fit_target.h"
+
 #include <Eigen/Core>
+
+#include <array>
+#include <vector>
 
 namespace reradiant {
 
-/// Augmented Lagrangian (Nocedal and Wright 2006, 17.4) of "photon sum of column i <= budget(i)":
-/// a column costs half of max(0, strength (sum - budget) + multiplier)^2 / strength. Columns of
-/// strength 0 are left out of the problem.
-struct PhotonPenalty {
-    Eigen::VectorXd strength, multiplier;
+/// Costs of the photons that an excitation column emits, sum S in units of the target's scale. Two
+/// residuals a column:
+/// - the measured diagonal d +- sigma gives way where S + d exceeds 1: max(0, S - spare) / sigma,
+///   which is what is left of ((true diagonal - d) / sigma)^2 at its minimum under the balance;
+/// - S <= budget by an augmented Lagrangian (Nocedal and Wright 2006, 17.4):
+///   max(0, strength (S - budget) + multiplier) / sqrt(strength).
+/// Columns that have not exceeded anything yet are left out of the problem.
+class PhotonPenalty {
+public:
+    explicit PhotonPenalty(const FitTarget& target);
 
-    explicit PhotonPenalty(Eigen::Index columns = 0)
-        : strength(Eigen::VectorXd::Zero(columns)), multiplier(Eigen::VectorXd::Zero(columns)) {}
-    bool is_active() const { return (strength.array() > 0.0).any(); }
-    /// Residual of one column and its derivative by the sum.
-    double residual(Eigen::Index column, double excess) const;
-    double slope(Eigen::Index column, double excess) const;
-    /// After a solve: new multipliers, and a strength for columns that newly exceed their budget.
-    /// True when some column exceeds it by more than `tolerance` (in the units of `sums`).
-    bool update(const Eigen::VectorXd& sums, const Eigen::VectorXd& budget, double first_strength,
-                double tolerance);
+    static constexpr int residuals_of_a_column = 2;
+    using Residuals = std::array<double, residuals_of_a_column>;
+
+    bool watches(Eigen::Index column) const {
+        return is_short_[static_cast<std::size_t>(column)] || strength_(column) > 0.0;
+    }
+    /// Residuals of a column and their derivatives by the sum.
+    Residuals residuals(Eigen::Index column, double sum) const;
+    Residuals slopes(Eigen::Index column, double sum) const;
+    /// Square sum of the first residuals: how far the diagonal must give way.
+    double misfit(const Eigen::VectorXd& sums) const;
+    /// After a solve: watches columns that newly exceed something by more than `tolerance` (in the
+    /// units of `sums`) and has new multipliers. True when another solve is needed.
+    bool update(const Eigen::VectorXd& sums, double first_strength, double tolerance);
+
+private:
+    double give_way(Eigen::Index column, double sum) const;
+
+    const FitTarget& target_;
+    std::vector<bool> is_short_; ///< the diagonal of the column has to give way
+    Eigen::VectorXd strength_, multiplier_;
 };
 
 } // namespace reradiant

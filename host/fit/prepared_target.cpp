@@ -1,5 +1,8 @@
 #include "host/fit/prepared_target.h"
 
+#include "host/fit/noise_estimate.h"
+#include "host/fit/rounding_steps.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,18 +16,6 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-/// Data without noise are weighed as if they had this share of their peak: single precision files
-/// carry no more.
-constexpr double smallest_noise = 1e-6;
-
-double median(std::vector<double> values) {
-    if (values.empty())
-        return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 /// Files carry no more digits, and the rounding of a unit must not choose among solutions that fit
 /// nearly alike.
 Matrix single_precision(const Matrix& values) {
@@ -60,7 +51,7 @@ void note_empty_columns(const PreparedTarget& prepared, const Matrix& value,
                                     list));
 }
 
-void read_diagonal(const BispectralData& data, PreparedTarget& prepared) {
+void read_diagonal(const BispectralData& data, const Matrix& sigma, PreparedTarget& prepared) {
     const BispectralBlock& block = data.blocks.front();
     ReradiationMatrix grids;
     grids.emission = data.emission;
@@ -73,8 +64,7 @@ void read_diagonal(const BispectralData& data, PreparedTarget& prepared) {
         if (o < 0 || !std::isfinite(block.value(o, i)))
             continue;
         prepared.diagonal(i) = std::clamp(block.value(o, i), 0.0, 1.0);
-        prepared.diagonal_sigma(i) =
-            std::isfinite(block.sigma(o, i)) ? block.sigma(o, i) : prepared.noise;
+        prepared.diagonal_sigma(i) = sigma(o, i);
         moved += prepared.diagonal(i) != block.value(o, i) ? 1 : 0;
     }
     if (moved > 0)
@@ -82,29 +72,17 @@ void read_diagonal(const BispectralData& data, PreparedTarget& prepared) {
             fmt::format("{} diagonal entries below 0 or above 1 were moved to that limit", moved));
 }
 
-/// What every column may still emit: photons that the diagonal has not taken.
-Eigen::VectorXd photon_budget(const PreparedTarget& prepared) {
-    Eigen::VectorXd budget(prepared.diagonal.size());
-    for (Eigen::Index i = 0; i < budget.size(); ++i)
-        budget(i) = 1.0 - (std::isfinite(prepared.diagonal(i)) ? prepared.diagonal(i) : 0.0);
-    return budget / prepared.target.scale;
-}
-
-/// Noise seen through mixed differences with these weights in both directions; 0 when fewer than 16
-/// places can be looked at.
-double noise_of_differences(const Matrix& value, const Matrix& used,
-                            const Eigen::VectorXd& weights) {
-    constexpr std::size_t fewest = 16;
-    const Eigen::Index n = weights.size();
-    std::vector<double> sizes;
-    for (Eigen::Index i = 0; i + n <= value.cols(); ++i)
-        for (Eigen::Index o = 0; o + n <= value.rows(); ++o)
-            if (used.block(o, i, n, n).minCoeff() > 0.0)
-                sizes.push_back(std::abs(weights.dot(value.block(o, i, n, n) * weights)));
-    if (sizes.size() < fewest)
-        return 0.0;
-    // 1.4826 times the median of |x| is the standard deviation of normal noise (Hampel 1974).
-    return 1.4826 * median(sizes) / weights.squaredNorm();
+/// What every column may emit: all photons, and those that the diagonal as measured has not taken.
+void set_photon_limits(PreparedTarget& prepared) {
+    FitTarget& target = prepared.target;
+    target.budget = Eigen::VectorXd::Constant(prepared.diagonal.size(), 1.0 / target.scale);
+    target.spare = target.budget;
+    target.spare_weight = Eigen::VectorXd::Zero(target.spare.size());
+    for (Eigen::Index i = 0; i < target.spare.size(); ++i)
+        if (std::isfinite(prepared.diagonal(i))) {
+            target.spare(i) = (1.0 - prepared.diagonal(i)) / target.scale;
+            target.spare_weight(i) = target.scale / prepared.diagonal_sigma(i);
+        }
 }
 
 /// Whether entries lie so far below zero that noise cannot be the reason: 1 % of those used beyond
@@ -117,45 +95,29 @@ bool is_dark_signal_off(const Matrix& value, const Matrix& used, double noise) {
     return below > std::max(fewest, share * used.sum());
 }
 
-/// Fills target.weight (in units of 1 / scale) from standard errors, given or estimated.
-void set_weights(const BispectralBlock& block, const Matrix& used, PreparedTarget& prepared) {
+/// Fills target.value and target.weight (in units of `scale`) from the used entries and their
+/// errors.
+void set_weights(const EntryErrors& errors, const Matrix& used, PreparedTarget& prepared) {
     FitTarget& target = prepared.target;
-    const double floor = smallest_noise * target.scale;
-    std::vector<double> known;
-    for (Eigen::Index k = 0; k < used.size(); ++k)
-        if (used(k) > 0.0 && std::isfinite(block.sigma(k)))
-            known.push_back(block.sigma(k));
-    prepared.noise_is_estimated = known.empty();
-    prepared.noise = known.empty() ? estimated_noise(block.value, used) : median(known);
-    if (prepared.noise < floor) {
-        prepared.noise = floor;
-        prepared.notes.push_back(
-            fmt::format("no noise is seen in the data; weighed as if it were {:.1g}", floor));
-    }
-    if (prepared.noise_is_estimated && is_dark_signal_off(block.value, used, prepared.noise)) {
+    prepared.noise_is_estimated = errors.is_estimated;
+    prepared.noise = errors.noise;
+    prepared.shared_rounding = errors.shared_rounding;
+    prepared.notes.insert(prepared.notes.end(), errors.notes.begin(), errors.notes.end());
+    const Matrix kept = (used.array() > 0.0).select(errors.value, target.value);
+    const double peak = kept.cwiseAbs().maxCoeff();
+    target.scale = peak > 0.0 ? peak : 1.0;
+    target.value = single_precision(kept / target.scale);
+    if (errors.is_estimated && is_dark_signal_off(kept, used, errors.noise)) {
         prepared.notes.push_back(
             fmt::format("{} negative entries are fitted as zero: many are far below the noise",
                         (target.value.array() < 0.0).count()));
         target.value = target.value.cwiseMax(0.0);
     }
-    for (Eigen::Index k = 0; k < used.size(); ++k) {
-        const double sigma =
-            std::isfinite(block.sigma(k)) ? std::max(block.sigma(k), floor) : prepared.noise;
-        target.weight(k) = used(k) > 0.0 ? target.scale / sigma : 0.0;
-    }
-    target.weight = single_precision(target.weight);
+    target.weight =
+        single_precision((used.array() > 0.0).select(target.scale / errors.sigma.array(), 0.0));
 }
 
 } // namespace
-
-double estimated_noise(const Matrix& value, const Matrix& used) {
-    Eigen::VectorXd second(3), fourth(5);
-    second << 1.0, -2.0, 1.0;
-    fourth << 1.0, -4.0, 6.0, -4.0, 1.0;
-    const double coarse = noise_of_differences(value, used, second);
-    const double fine = noise_of_differences(value, used, fourth);
-    return fine > 0.0 ? std::min(coarse, fine) : coarse;
-}
 
 Matrix saturated_entries(const Matrix& value) {
     constexpr int fewest = 4;
@@ -169,7 +131,11 @@ Matrix saturated_entries(const Matrix& value) {
     const double count = plateau.sum();
     // A matrix that is constant wherever it is not zero has no peak that could have been cut.
     const double bright = static_cast<double>((value.array() > 0.5 * largest).count());
-    if (count < fewest || count > 0.9 * bright)
+    // Around a peak that is only rounded the next levels below hold as many entries.
+    const double step = rounding_steps(value).maxCoeff();
+    const double beside =
+        static_cast<double>((value.array() > largest - 3.5 * step).count()) - count;
+    if (count < fewest || count > 0.9 * bright || (step > 0.0 && count <= beside))
         plateau.setZero();
     return plateau;
 }
@@ -193,14 +159,11 @@ PreparedTarget prepare_target(const BispectralData& data, const TargetSettings& 
                                              saturated.sum(),
                                              saturated.cwiseProduct(block.value).maxCoeff()));
     used = used.cwiseProduct((1.0 - saturated.array()).matrix());
-    const Matrix kept = (used.array() > 0.0).select(block.value, target.value);
-    const double peak = kept.cwiseAbs().maxCoeff();
-    target.scale = peak > 0.0 ? peak : 1.0;
-    target.value = single_precision(kept / target.scale);
-    set_weights(block, used, prepared);
-    read_diagonal(data, prepared);
+    const EntryErrors errors = entry_errors(block.value, block.sigma, used);
+    set_weights(errors, used, prepared);
+    read_diagonal(data, errors.sigma, prepared);
     note_empty_columns(prepared, block.value, prepared.notes);
-    target.budget = photon_budget(prepared);
+    set_photon_limits(prepared);
     return prepared;
 }
 

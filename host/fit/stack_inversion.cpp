@@ -1,7 +1,8 @@
 #include "host/fit/stack_inversion.h"
 
 #include "host/error.h"
-#include "host/fit/prepared_target.h"
+#include "host/fit/fit_target.h"
+#include "host/fit/noise_estimate.h"
 #include "host/fit/stack_response.h"
 #include "host/fit/unknown_stack.h"
 
@@ -47,26 +48,18 @@ BispectralData with_geometries(BispectralData data) {
     return data;
 }
 
-/// Squared weights of every block: 1 / sigma^2, estimated where the data have none.
-std::vector<Matrix> block_weights(const BispectralData& data, bool& is_estimated) {
+/// Squared weights of every block: 1 / sigma^2 of its entry_errors, which also give the values.
+std::vector<Matrix> block_weights(BispectralData& data, bool& is_estimated) {
     std::vector<Matrix> weights;
     is_estimated = true;
-    for (const BispectralBlock& block : data.blocks) {
+    for (BispectralBlock& block : data.blocks) {
         const Matrix known = (block.value.array() == block.value.array()).cast<double>();
-        const Matrix value = (known.array() > 0.0).select(block.value, 0.0 * known);
-        const double floor = std::max(1e-6 * value.cwiseAbs().maxCoeff(), 1e-300);
-        const Matrix allowed =
-            known.cwiseProduct(allowed_entries(data.emission, data.excitation, false));
-        const double estimate = std::max(floor, estimated_noise(value, allowed));
-        Matrix weight = Matrix::Zero(value.rows(), value.cols());
-        for (Eigen::Index k = 0; k < weight.size(); ++k) {
-            if (known(k) == 0.0)
-                continue;
-            const bool given = std::isfinite(block.sigma(k));
-            is_estimated = is_estimated && !given;
-            weight(k) = std::pow(given ? std::max(block.sigma(k), floor) : estimate, -2);
-        }
-        weights.push_back(weight);
+        const EntryErrors errors = entry_errors(
+            block.value, block.sigma,
+            known.cwiseProduct(allowed_entries(data.emission, data.excitation, false)));
+        is_estimated = is_estimated && errors.is_estimated;
+        block.value = errors.value;
+        weights.push_back(known.cwiseProduct(errors.sigma.cwiseAbs2().cwiseInverse()));
     }
     return weights;
 }
@@ -152,7 +145,7 @@ SubstrateData invert_stack(const BispectralData& data, const LayerStack& stack,
                           "give --stack, too");
     if (stack.layers.empty() && is_bare)
         return {data, stack, {}, {}, false, {}};
-    const BispectralData measured = with_geometries(data);
+    BispectralData measured = with_geometries(data);
     bool is_estimated = true;
     const std::vector<Matrix> weights = block_weights(measured, is_estimated);
     SubstrateData result{measured, stack, {}, {}, is_estimated, {}};

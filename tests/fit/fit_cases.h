@@ -50,6 +50,44 @@ inline std::vector<TestFluorophore> two_fluorophores() {
     return {{520.0, 35.0, 0.8, 600.0, 22.0, 0.9}, {380.0, 30.0, 0.6, 470.0, 25.0, 0.8}};
 }
 
+/// Over a reflectance that leaves all light that the fluorophores do not absorb: a bright white.
+inline ReradiationMatrix white_matrix(const std::vector<TestFluorophore>& list,
+                                      const WavelengthGrid& emission,
+                                      const WavelengthGrid& excitation) {
+    std::vector<Fluorophore> fluorophores;
+    for (const TestFluorophore& f : list)
+        fluorophores.push_back(as_fluorophore(f));
+    std::vector<double> nm, left;
+    for (double l = 250.0; l <= 850.0; l += 1.0) {
+        nm.push_back(l);
+        left.push_back(1.0);
+        for (const Fluorophore& f : fluorophores)
+            left.back() -= f.excitation(l);
+    }
+    return matrix_from_fluorophores(fluorophores, Spectrum::table(nm, left), emission, excitation);
+}
+
+/// Uniform between limits, the same everywhere.
+inline double uniform(std::mt19937& random, double from, double to) {
+    return from + (to - from) * static_cast<double>(random()) * 0x1.0p-32;
+}
+
+/// Ordinary dyes of any colour that absorb at most 0.9 together.
+inline std::vector<TestFluorophore> random_fluorophores(std::mt19937& random, int count) {
+    std::vector<TestFluorophore> list;
+    for (int k = 0; k < count; ++k) {
+        TestFluorophore dye{};
+        dye.excitation_nm = uniform(random, 330.0, 580.0);
+        dye.excitation_sigma_nm = uniform(random, 18.0, 45.0);
+        dye.absorptance = uniform(random, 0.1, 0.9) / count;
+        dye.emission_nm = dye.excitation_nm + uniform(random, 30.0, 110.0);
+        dye.emission_sigma_nm = uniform(random, 15.0, 40.0);
+        dye.quantum_yield = uniform(random, 0.3, 0.95);
+        list.push_back(dye);
+    }
+    return list;
+}
+
 /// Data as an instrument with the same noise everywhere sees them; sigma given when `tell`.
 inline BispectralData noisy_data(const ReradiationMatrix& truth, double noise, bool tell,
                                  unsigned seed) {

@@ -25,7 +25,7 @@ TEST(Factors, EntryJacobianIsThatOfTheMatrix) {
     target.value = truth.values;
     target.weight = Eigen::MatrixXd::Ones(41, 49);
     target.allowed = allowed_entries(target.emission, target.excitation, false);
-    const PhotonPenalty penalty(49);
+    const PhotonPenalty penalty(target);
     const FactorModel model(target, 2, spline_basis(target.emission, 25.0),
                             spline_basis(target.excitation, 25.0), penalty, RobustLoss::None,
                             FactorModel::bend_of_lines);
@@ -113,7 +113,8 @@ TEST(Factors, PriorOfBendsDoesNotDependOnTheGrid) {
         FitTarget target;
         target.emission = target.excitation =
             WavelengthGrid{400.0, step_nm, static_cast<int>(300.0 / step_nm) + 1};
-        const PhotonPenalty penalty(target.excitation.count);
+        target.value.setZero(target.emission.count, target.excitation.count);
+        const PhotonPenalty penalty(target);
         const FactorModel model(target, 1, per_band_basis(target.emission),
                                 per_band_basis(target.excitation), penalty, RobustLoss::None,
                                 FactorModel::bend_of_bands);

@@ -26,7 +26,7 @@ TEST(Gaussians, JacobianIsThatOfTheMatrix) {
     target.value = truth.values;
     target.weight = Eigen::MatrixXd::Ones(41, 49);
     target.allowed = allowed_entries(target.emission, target.excitation, false);
-    const PhotonPenalty penalty(49);
+    const PhotonPenalty penalty(target);
     const GaussianModel model(target, 2, penalty, RobustLoss::None);
     Eigen::VectorXd p(10);
     p << 0.8, 1.7, -2.3, 1.95, -2.0, 0.5, 2.1, -2.4, 2.6, -1.9;
