@@ -18,12 +18,16 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <optional>
 
 namespace reradiant {
 
 namespace {
+
+/// The results are written, but they are not all that the data say.
+constexpr int exit_not_within_noise = 3;
 
 struct FitOptions {
     std::filesystem::path data, output, stack, report, model_file;
@@ -87,6 +91,18 @@ void warn(const FitResult& result) {
     if (result.stack)
         for (const std::string& ambiguity : result.stack->ambiguities)
             spdlog::warn("{}", ambiguity);
+}
+
+/// Says in the last line that residuals are not noise; the exit code. It is no failure where the
+/// user chose how much the model may hold.
+int judge(const FitOptions& options, const CommonOptions& common, const FitResult& result) {
+    if (result.shortfall.empty())
+        return 0;
+    const bool was_chosen = options.rank || options.bytes;
+    if (!common.quiet || !was_chosen)
+        fmt::print(common.quiet ? stderr : stdout, "{}: {}\n", options.data.string(),
+                   result.shortfall);
+    return was_chosen ? 0 : exit_not_within_noise;
 }
 
 /// What the steps of a fit depend on.
@@ -167,7 +183,7 @@ int run_fit(const FitOptions& options, const CommonOptions& common) {
     write_json(common.json, fit_summary(result));
     if (!common.quiet)
         print_summary(options, result);
-    return 0;
+    return judge(options, common, result);
 }
 
 } // namespace
@@ -230,7 +246,9 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
         ->capture_default_str();
     command->add_flag("--resume", options->resume,
                       "go on from MATRIX.csv.checkpoint where it exists");
-    command->footer("Example: reradiant fit orange.BFC -o orange.csv --report orange.html");
+    command->footer(
+        "Exits with 3, everything written, when the data hold more than the model found "
+        "in them.\nExample: reradiant fit orange.BFC -o orange.csv --report orange.html");
     command->callback(
         [options, &context] { context.exit_code = run_fit(*options, context.common); });
 }

@@ -189,6 +189,17 @@ FittedCandidate by_width(const FitTarget& target, const FactorFitter& fitter,
     return best;
 }
 
+/// Whether a candidate explains what another, whose residuals are not noise, does not: then the
+/// evidence, which takes residuals for noise, is no judge.
+bool leaves_clearly_less(const FittedCandidate& candidate, const FittedCandidate& other,
+                         const FitTarget& target) {
+    constexpr double clearly = 0.8;
+    const auto reduced = [&](const FittedCandidate& fit) {
+        return fit.fit.chi_squared / degrees_of_freedom(fit, target);
+    };
+    return residuals_are_noise(candidate, target) || reduced(candidate) < clearly * reduced(other);
+}
+
 /// Terms are added while the evidence for them is very strong, or while what they leave is not
 /// noise: two may help where one cannot. The width of the prior of a term's bends is chosen by
 /// evidence, too. No splines: what they cannot bend to is not in the error
@@ -202,7 +213,7 @@ FittedCandidate by_evidence(const FitTarget& target, const FactorFitter& fitter,
         smaller = curves_of(next);
         const bool is_done = residuals_are_noise(best, target);
         if (next.criterion < best.criterion - very_strong ||
-            (!is_done && residuals_are_noise(next, target)))
+            (!is_done && leaves_clearly_less(next, best, target)))
             best = std::move(next);
         else if (is_done)
             break;

@@ -105,6 +105,7 @@ TEST(OrdinarySets, WhatNoModelFollowsIsSaid) {
     EXPECT_EQ(fit.failure, "");
     EXPECT_NE(fit.shortfall.find("times the noise"), std::string::npos) << fit.shortfall;
     EXPECT_GT(fit.reduced_chi_squared, 2.0);
+    EXPECT_EQ(fit.rank, largest_factor_rank); // as much as there can be
     EXPECT_EQ(fit_summary(fit)["within_noise"], false);
     FitSettings every_entry;
     every_entry.model = FitModel::Matrix;

@@ -104,6 +104,32 @@ TEST_F(FitCommand, WritesMatrixModelReportAndJson) {
     EXPECT_EQ(run("validate model.toml").exit_code, 0);
 }
 
+TEST_F(FitCommand, WhatTheTermsDoNotFollowIsTheLastLineAndExit3) {
+    // A line that moves with the excitation has as many terms as there are excitations.
+    std::string text = "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
+                       "# kind: measured\nnm";
+    for (int i = 0; i < 30; ++i)
+        text += fmt::format(",{}", 400 + 10 * i);
+    for (int o = 0; o < 30; ++o) {
+        text += fmt::format("\n{}", 400 + 10 * o);
+        for (int i = 0; i < 30; ++i)
+            text +=
+                fmt::format(",{}", (o > i ? 0.05 * std::exp(-0.5 * std::pow(o - i - 6, 2)) : 0.0) +
+                                       2e-4 * std::sin(12.9898 * o + 78.233 * i));
+    }
+    put("data.csv", text + '\n');
+    const ProgramResult result = run("fit data.csv -o out.csv --json fit.json");
+    EXPECT_EQ(result.exit_code, 3) << result.errors;
+    const std::size_t end = result.output.find_last_not_of('\n');
+    const std::size_t last = result.output.rfind('\n', end) + 1;
+    EXPECT_EQ(result.output.find("data.csv: the residuals are", last), last) << result.output;
+    const auto json = nlohmann::json::parse(file_bytes(folder / "fit.json"));
+    EXPECT_EQ(json["within_noise"], false);
+    EXPECT_EQ(run("validate out.csv").exit_code, 0);
+    // As many terms as were asked for are no failure.
+    EXPECT_EQ(run("fit data.csv -o out.csv --rank 2").exit_code, 0);
+}
+
 TEST_F(FitCommand, BadInputIsRefusedAndNothingIsWritten) {
     put("data.csv", measured_csv());
     put("headless.csv", "# reradiation\nnm,400\n400,0.1\n");

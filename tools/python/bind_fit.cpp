@@ -11,6 +11,7 @@
 
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <limits>
@@ -68,7 +69,10 @@ std::shared_ptr<Fit> fit_data(const BispectralData& data, const py::dict& given)
     FitSettings settings = settings_from(given);
     return std::make_shared<Fit>(interruptible([&](StopFlag stop) {
         settings.solver.stop = stop;
-        return Fit{data, fit_reradiation(data, settings)};
+        Fit fit{data, fit_reradiation(data, settings)};
+        if (!fit.result.shortfall.empty())
+            spdlog::warn("{}", fit.result.shortfall);
+        return fit;
     }));
 }
 

@@ -214,7 +214,9 @@ def fit(data: Any, *, model: str = "factors", rank: Optional[int] = None,
     Returns
     -------
     Fit
-        `matrix` on the data's grid, `summary` and more.
+        `matrix` on the data's grid, `summary` and more. Where the residuals are not noise,
+        `summary["within_noise"]` is False, `summary["shortfall"]` says by how much, and the logger
+        warns.
 
     Raises
     ------

@@ -153,7 +153,8 @@ class Fit:
 
     @property
     def matrix(self) -> Reradiation:
-        """The model on the data's grid, with the data's diagonal."""
+        """The model on the data's grid, with the data's diagonal, lowered within its noise where
+        more photons would leave than arrive."""
         return Reradiation._of(self._fit.matrix)
 
     @property
