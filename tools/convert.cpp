@@ -2,6 +2,7 @@
 #include "host/error.h"
 #include "host/output_file.h"
 #include "host/paths.h"
+#include "host/quiet_log.h"
 #include "host/report/json_file.h"
 #include "host/scene/mitsuba_import.h"
 #include "host/scene/scene_table.h"
@@ -13,7 +14,6 @@
 #include "tools/outputs.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <functional>
 #include <memory>
@@ -39,19 +39,6 @@ void refuse_form_options(const ConvertOptions& options, const char* why) {
                           "leave them out, or write a .csv of a re-radiation matrix");
 }
 
-/// Nothing is warned about while it lives: what is written and read for trial is warned about where
-/// it is meant.
-class Silence {
-public:
-    Silence() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
-    ~Silence() { spdlog::set_level(level_); }
-    Silence(const Silence&) = delete;
-    Silence& operator=(const Silence&) = delete;
-
-private:
-    spdlog::level::level_enum level_;
-};
-
 using FileAction = std::function<void(const std::filesystem::path&)>;
 
 /// Writes what loads again, which a copy among the temporary files shows.
@@ -65,7 +52,7 @@ void write_if_it_loads(const ConvertOptions& options, const FileAction& write,
     };
     const std::unique_ptr<const std::filesystem::path, decltype(remove)> removed(&copy, remove);
     try {
-        const Silence silence;
+        const QuietLog quiet;
         write(copy);
         read(copy);
     } catch (const Error& error) {
@@ -109,7 +96,7 @@ void convert_spectrum(const ConvertOptions& options) {
 
 /// Refuses what would not load: in the XML, where its place is known, then as it would be written.
 void check_scene(const ConvertOptions& options, const std::string& text) {
-    const Silence silence;
+    const QuietLog quiet;
     load_scene(options.in);
     try {
         scene_from_table(parse_toml(options.out.string(), text), options.out);

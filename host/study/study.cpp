@@ -1,6 +1,7 @@
 #include "host/study/study.h"
 
 #include "host/error.h"
+#include "host/quiet_log.h"
 #include "host/scene/sha256.h"
 #include "host/spectral/colour.h"
 #include "host/study/study_store.h"
@@ -17,18 +18,6 @@
 namespace reradiant {
 
 namespace {
-
-/// Reading a scene warns about what it finds; once is enough, and loading the study did.
-class QuietLog {
-public:
-    QuietLog() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
-    ~QuietLog() { spdlog::set_level(level_); }
-    QuietLog(const QuietLog&) = delete;
-    QuietLog& operator=(const QuietLog&) = delete;
-
-private:
-    spdlog::level::level_enum level_;
-};
 
 std::string duration_text(double seconds) {
     if (seconds < 60.0)

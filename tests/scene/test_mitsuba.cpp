@@ -208,16 +208,18 @@ TEST_F(Mitsuba, PathDepthIsCountedFromTheLight) {
     EXPECT_EQ(load(R"(<integrator type="direct"/>)").integrator.max_depth, 1);
 }
 
+void expect_refusal(const Caught& caught, const std::string& text, int line, int column) {
+    ASSERT_TRUE(caught.thrown) << text;
+    EXPECT_EQ(caught.exit_code, 2);
+    EXPECT_NE(caught.text.find(text), std::string::npos) << caught.text;
+    EXPECT_NE(caught.text.find(".xml"), std::string::npos) << caught.text;
+    EXPECT_EQ(caught.line, line) << caught.text;
+    EXPECT_EQ(caught.column, column) << caught.text;
+}
+
 TEST_F(Mitsuba, WhatIsNotSupportedIsNamedWithItsPlace) {
     const auto expect = [&](const std::string& body, const std::string& text, int line,
-                            int column) {
-        const Caught caught = refusal(body);
-        ASSERT_TRUE(caught.thrown) << body;
-        EXPECT_EQ(caught.exit_code, 2);
-        EXPECT_NE(caught.text.find(text), std::string::npos) << caught.text;
-        EXPECT_EQ(caught.line, line) << caught.text;
-        EXPECT_EQ(caught.column, column) << caught.text;
-    };
+                            int column) { expect_refusal(refusal(body), text, line, column); };
     expect("<shape type=\"cylinder\"/>", "shape \"cylinder\"", 6, 1);
     expect("<shape type=\"sphere\">\n  <bsdf type=\"dielectric\"/></shape>", "bsdf \"dielectric\"",
            7, 3);
@@ -253,15 +255,7 @@ TEST_F(Mitsuba, WhatIsNotSupportedIsNamedWithItsPlace) {
 
 TEST_F(Mitsuba, WhatTheSceneReaderRefusesIsPlacedInTheXml) {
     const auto expect = [&](const std::string& body, const std::string& text, int line,
-                            int column) {
-        const Caught caught = refusal(body);
-        ASSERT_TRUE(caught.thrown) << body;
-        EXPECT_EQ(caught.exit_code, 2);
-        EXPECT_NE(caught.text.find(text), std::string::npos) << caught.text;
-        EXPECT_NE(caught.file.find("scene.xml"), std::string::npos) << caught.text;
-        EXPECT_EQ(caught.line, line) << caught.text;
-        EXPECT_EQ(caught.column, column) << caught.text;
-    };
+                            int column) { expect_refusal(refusal(body), text, line, column); };
     const auto expect_lamp = [&](const std::string& spectrum, const std::string& text, int column) {
         expect("<emitter type=\"constant\">\n<spectrum name=\"radiance\" " + spectrum +
                    "</emitter>",
