@@ -3,6 +3,7 @@
 #include "host/film/spectral_image.h"
 #include "host/report/json_file.h"
 #include "tools/command.h"
+#include "tools/number_options.h"
 #include "tools/outputs.h"
 
 #include <fmt/format.h>
@@ -70,7 +71,7 @@ void add_compare_command(CLI::App& program, CommandContext& context) {
     command->add_option("REFERENCE", options->reference, "spectral EXR of the same size and bands")
         ->required();
     command->add_option("--max-relmse", options->max_relmse, "exit with 3 when relMSE is higher")
-        ->check(CLI::NonNegativeNumber);
+        ->check(non_negative_number());
     command->add_option(
         "--memory-limit", options->memory_limit_bytes,
         "refuse images that would take more bytes (default: 80 % of the machine's)");

@@ -8,6 +8,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
+#include "tools/number_options.h"
 #include "tools/outputs.h"
 #include "tools/parse_options.h"
 
@@ -99,14 +100,14 @@ void add_converge_command(CLI::App& program, CommandContext& context) {
                     "times --time allow")
         ->check(CLI::Range(1u, 1u << 30));
     app->add_option("--time", command->options.time_seconds, "seconds of rendering, each method")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
     app->add_option("--bands", command->bands, "film bands in nm, FROM:TO:STEP");
     app->add_option("--memory-limit", command->options.render.memory_limit_bytes,
                     "refuse a render that would take more bytes (default: 80 % of the machine's)");
     app->add_option("--checkpoint", command->options.render.checkpoint_seconds,
                     "keep the render in progress every so many seconds")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
     app->add_flag(
         "--resume", command->options.resume,

@@ -11,6 +11,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
+#include "tools/number_options.h"
 #include "tools/outputs.h"
 
 #include <fmt/format.h>
@@ -209,7 +210,7 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
     command
         ->add_option("--spill-nm", options->spill_nm,
                      "entries this near to the diagonal are not fitted; default: one band")
-        ->check(CLI::NonNegativeNumber);
+        ->check(non_negative_number());
     command
         ->add_option("--mask", options->mask,
                      "entries that count as not measured: auto (scatter of the monochromators that "
@@ -232,17 +233,17 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
     command->add_option("--model-file", options->model_file,
                         "compact model as TOML, usable as RERADIATION");
     command->add_option("--most-seconds", options->seconds, "time limit of one minimisation")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
     command
         ->add_option("--most-iterations", options->iterations,
                      "limit of Ceres' steps in one minimisation")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
     command
         ->add_option("--checkpoint", options->checkpoint_seconds,
                      "write MATRIX.csv.checkpoint every so many seconds")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
     command->add_flag("--resume", options->resume,
                       "go on from MATRIX.csv.checkpoint where it exists");

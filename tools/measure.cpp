@@ -6,6 +6,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
+#include "tools/number_options.h"
 #include "tools/outputs.h"
 #include "tools/parse_options.h"
 
@@ -173,11 +174,11 @@ void add_measure_command(CLI::App& program, CommandContext& context) {
     command
         ->add_option("--samples", options->samples,
                      "paths per theta-i (model walk only; default 65536), in blocks of 256")
-        ->check(CLI::NonNegativeNumber);
+        ->check(non_negative_number());
     command
         ->add_option("--checkpoint", options->checkpoint_seconds,
                      "write OUT.csv.checkpoint every so many seconds of walks")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
     command->add_flag("--resume", options->resume, "go on from OUT.csv.checkpoint where it exists");
     command->add_option("--memory-limit", options->memory_limit_bytes,

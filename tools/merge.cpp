@@ -24,7 +24,8 @@ struct MergeCommand {
 
 int run_merge(const MergeCommand& command, const CommandContext& context) {
     check_outputs(context.common,
-                  {{"--output", command.output, {".exr"}}, {"--png", command.png, {".png"}}});
+                  {{"--output", command.output, {".exr"}}, {"--png", command.png, {".png"}}},
+                  command.parts);
     check_exposure(command.display.exposure_ev);
     if (!command.png.empty())
         check_display(command.display);

@@ -13,6 +13,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
+#include "tools/number_options.h"
 #include "tools/outputs.h"
 #include "tools/parse_options.h"
 #include "tools/tev_preview.h"
@@ -147,17 +148,25 @@ void write_results(const RenderCommand& command, const CommonOptions& common,
                        static_cast<std::size_t>(result.image.height));
 }
 
+std::vector<std::filesystem::path> images_of(const Scene& scene) {
+    std::vector<std::filesystem::path> files;
+    for (const Image& image : scene.images)
+        files.push_back(image.file);
+    return files;
+}
+
 int run_render(RenderCommand command, const CommandContext& context) {
     CommonOptions common = context.common;
     const std::unique_ptr<Team> team = join_team(common);
     apply_texts(command, common);
-    check_outputs(common,
-                  {{"--output", command.output, {".exr"}}, {"--png", command.png, {".png"}}},
-                  {command.scene});
+    const std::vector<NamedOutput> outputs = {{"--output", command.output, {".exr"}},
+                                              {"--png", command.png, {".png"}}};
+    check_outputs(common, outputs, {command.scene});
     check_exposure(command.display.exposure_ev);
     if (command.shows_a_display())
         check_display(command.display);
     const Scene scene = load_scene(command.scene);
+    check_outputs(common, outputs, images_of(scene));
     prepare_opencl(common.threads);
     const Device device(common.device);
     command.render.checkpoint = checkpoint_beside(command.output);
@@ -194,14 +203,14 @@ void add_stopping_options(CLI::App& app, RenderCommand& command) {
         ->check(CLI::Range(1u, 1u << 30))
         ->each([&command](const std::string&) { command.samples_given = true; });
     app.add_option("--time", command.render.time_seconds, "stop after so many seconds")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     app.add_option("--error", command.render.relmse, "stop at this estimated relMSE")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     app.add_option("--sample-range", command.sample_range,
                    "only samples A to B - 1 of every pixel, as A:B");
     app.add_option("--checkpoint", command.render.checkpoint_seconds,
                    "write OUT.exr.checkpoint every so many seconds")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
     app.add_flag("--resume", command.render.resume,
                  "go on from OUT.exr.checkpoint where it exists");

@@ -9,6 +9,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
+#include "tools/number_options.h"
 #include "tools/outputs.h"
 
 #include <fmt/format.h>
@@ -116,7 +117,7 @@ void add_study_command(CLI::App& program, CommandContext& context) {
                     "refuse a render that would take more bytes (default: 80 % of the machine's)");
     app->add_option("--checkpoint", command->options.render.checkpoint_seconds,
                     "keep a cell's render every so many seconds")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
     app->add_flag("--resume", command->options.resume,
                   "refuse what was kept of another scene, build or device; without it such a cell "

@@ -2,6 +2,7 @@
 
 #include "host/spectral/colour.h"
 
+#include <ImfChannelList.h>
 #include <ImfChromaticities.h>
 #include <ImfStandardAttributes.h>
 
@@ -66,6 +67,14 @@ std::optional<Primaries> primaries_of(const Imf::Header& header, ExrColours colo
     return primaries_of(given, at);
 }
 
+bool holds_halves(const Imf::Header& header) {
+    const Imf::ChannelList& channels = header.channels();
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+        if (channel.channel().type == Imf::HALF)
+            return true;
+    return false;
+}
+
 } // namespace
 
 void convert_to_linear_srgb(Image& image, const Imf::Header& header, ExrColours colours,
@@ -73,8 +82,8 @@ void convert_to_linear_srgb(Image& image, const Imf::Header& header, ExrColours 
     const auto primaries = primaries_of(header, colours, at);
     if (!primaries)
         return;
-    constexpr double rounding =
-        1e-5; // of the largest; what half floats and matrices leave at an edge
+    // What rounding leaves at an edge of the gamut, of the largest: half floats have 11 bits.
+    const double rounding = holds_halves(header) ? 0x1p-10 : 1e-5;
     for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
         Xyz xyz{};
         for (std::size_t channel = 0; channel < 3; ++channel)

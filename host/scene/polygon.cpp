@@ -224,6 +224,26 @@ std::vector<std::uint32_t> EarClipper::clip() {
     return std::move(triangles_);
 }
 
+/// Whether the outline only goes there and back: nothing is left when corners between two equal
+/// ones are taken away.
+bool is_folded_up(std::span<const Vector3> corners) {
+    std::vector<Vector3> way;
+    for (const Vector3& corner : corners) {
+        if (!way.empty() && way.back() == corner)
+            continue;
+        if (way.size() > 1 && way[way.size() - 2] == corner)
+            way.pop_back();
+        else
+            way.push_back(corner);
+    }
+    std::size_t first = 0, last = way.size();
+    while (last - first > 2 && (way[first] == way[last - 1] || way[first + 1] == way[last - 1])) {
+        last -= way[first] == way[last - 1] ? 1 : 0;
+        first += last - first > 2 && way[first + 1] == way[last - 1] ? 1 : 0;
+    }
+    return last - first <= 2;
+}
+
 /// How far the corners reach.
 struct Spread {
     double noise = 0.0; ///< what rounding to single precision may move, with room for projecting
@@ -263,6 +283,8 @@ std::vector<std::uint32_t> triangulate_polygon(std::span<const Vector3> corners)
         return fan(corners.size());
     const Spread spread(corners);
     if (spread.is_line)
+        return {};
+    if (!has_area && is_folded_up(corners))
         return {};
     if (!has_area)
         throw std::invalid_argument("crosses itself: its parts cancel");

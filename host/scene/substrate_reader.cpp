@@ -12,6 +12,22 @@ namespace reradiant {
 
 namespace {
 
+/// An EXR image may hold any number; as a reflectance, times its factor, it lies within 0 and 1.
+void refuse_beyond_reflectance(const Image& image, const Spectrum& factor,
+                               const SourcePosition& at) {
+    constexpr float rounding = 1e-3f; // of half floats
+    const auto most = static_cast<float>(factor.maximum(380.0, 780.0));
+    for (std::size_t i = 0; i < image.rgb.size(); ++i)
+        if (const float value = image.rgb[i] * most;
+            !(value >= -rounding && value <= 1 + rounding)) {
+            const std::size_t pixel = i / 3, width = static_cast<std::size_t>(image.width);
+            throw_input_error(at,
+                              fmt::format("pixel ({}, {}) of {} makes a reflectance of {:.4g}",
+                                          pixel % width, pixel / width, image.file.string(), value),
+                              "give an image with numbers from 0 to 1, or a smaller high");
+        }
+}
+
 /// An image as a reflectance keeps its colours: `high` of the reference, 1 by default, times its
 /// rgb. With a `low` it is a texture like any other, by its grey value.
 bool read_reflectance_image(const TableReader& reader, Substrate& substrate, LoadState& state) {
@@ -33,6 +49,8 @@ bool read_reflectance_image(const TableReader& reader, Substrate& substrate, Loa
     else if (const toml::node* high = entry.table->get("high"))
         substrate.reflectance = read_spectrum_node(
             *high, entry.file, position_of(entry.file, *high), "high", limits, state);
+    refuse_beyond_reflectance(state.images[static_cast<std::size_t>(texture.image)],
+                              substrate.reflectance, reader.position_of_key("reflectance"));
     return true;
 }
 

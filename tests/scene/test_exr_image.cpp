@@ -98,6 +98,44 @@ TEST_F(ExrImages, Case69DisplayWindowsThatTheFileCannotFillAreRefused) {
     expect_refused("1000001 x 1");
 }
 
+TEST_F(ExrImages, HalfFloatsMayRoundOutOfTheGamut) {
+    // Red 0.8 of linear sRGB in XYZ, to half floats: blue comes back as -1.5e-5.
+    const std::array<float, 3> xyz{0.32983f, 0.170074f, 0.015461f};
+    Imf::Header header(small, small);
+    Imf::FrameBuffer frame;
+    std::map<std::string, std::vector<half>> values;
+    for (const auto& [name, value] :
+         std::map<std::string, float>{{"X", xyz[0]}, {"Y", xyz[1]}, {"Z", xyz[2]}}) {
+        header.channels().insert(name, Imf::Channel(Imf::HALF));
+        values[name].assign(12, half(value));
+        frame.insert(name, Imf::Slice::Make(Imf::HALF, values[name].data(), small));
+    }
+    {
+        Imf::OutputFile output(file().c_str(), header);
+        output.setFrameBuffer(frame);
+        output.writePixels(3);
+    }
+    expect_all(read(), {0.8, 0.0, 0.0}, 1e-3);
+}
+
+TEST_F(ExrImages, AReflectanceLiesWithinZeroAndOne) {
+    const auto scene = [&](const std::string& high) {
+        return write("scene.toml",
+                     replaced(SMALL_SCENE, "reflectance = 0.5\n",
+                              "reflectance = { texture = \"t\"" + high + " }\n") +
+                         "[[texture]]\nname = \"t\"\ntype = \"image\"\nfile = \"a.exr\"\n");
+    };
+    for (const float wrong : {1.5f, -0.1f, 255.0f}) {
+        put_rgb(0.5f, wrong, 0.5f, Imf::Header(small, small));
+        const auto file = scene("");
+        const Caught error = error_of([&] { load_scene(file); });
+        EXPECT_EQ(error.exit_code, 2);
+        EXPECT_NE(error.text.find("pixel (0, 0)"), std::string::npos) << error.text;
+    }
+    put_rgb(0.5f, 1.5f, 0.5f, Imf::Header(small, small));
+    EXPECT_NO_THROW(load_scene(scene(", high = 0.6")));
+}
+
 TEST_F(ExrImages, XyzByChromaticitiesOrByNameIsConverted) {
     const Xyz xyz{0.5, 0.6, 0.4};
     const auto wanted = xyz_to_linear_srgb(xyz);

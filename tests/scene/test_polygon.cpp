@@ -146,6 +146,9 @@ TEST(Polygon, TrianglesTurnAsThePolygonDoes) {
 TEST(Polygon, Case70DegenerateOnesHaveNoTrianglesOrThoseOfTheirArea) {
     EXPECT_TRUE(triangulate_polygon(Polygon(5, {1, 2, 3})).empty());
     EXPECT_TRUE(triangulate_polygon(Polygon{{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {2, 2, 2}}).empty());
+    const Vector3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
+    for (const Polygon& folded : {Polygon{a, b, c, b}, Polygon{b, c, b, a}, Polygon{c, b, a, b}})
+        EXPECT_TRUE(triangulate_polygon(folded).empty());
     expect_cut({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}}, "repeats");
     expect_cut({{0, 0, 0}, {0.5, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, 1, 0}, {0, 1, 0}}, "on lines");
     expect_cut({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {1, 5, 0}, {1, 2, 0}, {0, 2, 0}},

@@ -207,6 +207,21 @@ TEST_F(Outputs, StreamsGetTheBytes) {
     EXPECT_FALSE(exists("pipe.checkpoint"));
 }
 
+TEST_F(Outputs, WhatIsReadIsNotWrittenOver) {
+    ASSERT_EQ(run("render scene.toml -o a.exr --sample-range 0:1 --quiet").exit_code, 0);
+    ASSERT_EQ(run("render scene.toml -o b.exr --sample-range 1:2 --quiet").exit_code, 0);
+    const std::string part = file_bytes(folder / "a.exr");
+    expect_failure(2, "merge a.exr b.exr -o a.exr", "would write over what is read");
+    put("lit.toml", small_scene() + "[[light]]\ntype = \"environment\"\nfile = \"a.exr\"\n");
+    expect_failure(2, "render lit.toml --spp 1 -o a.exr", "would write over what is read");
+    EXPECT_EQ(file_bytes(folder / "a.exr"), part);
+    for (const char* command :
+         {"compare a.exr b.exr --max-relmse nan", "render scene.toml -o c.exr --time nan",
+          "measure material.toml "
+          "-o m.csv --checkpoint nan"})
+        EXPECT_EQ(run(command).exit_code, 2) << command;
+}
+
 TEST_F(Outputs, NamesAsLongAsTheyCanBe) {
     const std::string name = std::string(251, 'n') + ".csv";
     EXPECT_EQ(run("measure material.toml -o " + name).exit_code, 0);
