@@ -92,7 +92,8 @@ bool is_first_of(const TextReader& reader, const TextToken& value, std::string_v
 }
 
 void refuse_factor(const TextReader& reader, const HeaderEntry& entry) {
-    if (is_one_of(entry.name, std::array{"factor", "scale", "scale-factor", "scaling",
+    if (begins_as_number(entry.value.text) &&
+        is_one_of(entry.name, std::array{"factor", "scale", "scale-factor", "scaling",
                                          "scaling-factor", "multiplier"}))
         throw_input_error(reader.position(entry.key),
                           "the line states a factor that is not applied here",

@@ -63,7 +63,9 @@ TEST_F(MatrixHeaders, KeysAndValuesAreReadInAnyCase) {
     EXPECT_EQ(refused(head + "# orientaion: rows-emission\n" + body, "did you mean 'orientation'"),
               (std::pair{3, 3}));
     // What no key resembles is a remark.
-    EXPECT_EQ(read(head + "# source: a lab\n# licence = CC0\n# note\n" + body).values(0, 0), 0.3);
+    EXPECT_EQ(read(head + "# source: a lab\n# scale: linear\n# licence = CC0\n# note\n" + body)
+                  .values(0, 0),
+              0.3);
 }
 
 TEST_F(MatrixHeaders, UnitsAndFactorsThatAreNotAppliedAreRefused) {
