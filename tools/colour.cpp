@@ -14,6 +14,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 
 namespace reradiant {
@@ -148,7 +149,23 @@ bool some_polygon_passes(const std::vector<ColourReport>& reports) {
     });
 }
 
-int run_colour(const ColourOptions& options, const CommonOptions& common) {
+/// The names between commas; one that is empty is a slip.
+std::vector<std::string> split_names(const std::vector<std::string>& given) {
+    std::vector<std::string> names;
+    for (const std::string& list : given) {
+        std::istringstream parts(list + ',');
+        for (std::string name; std::getline(parts, name, ',');) {
+            if (name.empty())
+                throw_input_error({}, fmt::format("--illuminant: a name is missing in '{}'", list),
+                                  "write names between commas, as in D65,A");
+            names.push_back(name);
+        }
+    }
+    return names;
+}
+
+int run_colour(ColourOptions options, const CommonOptions& common) {
+    options.illuminants = split_names(options.illuminants);
     check_outputs(common, {{"--plot", options.plot, {".svg"}}},
                   {options.matrix, options.against, options.polygons});
     const ReradiationMatrix matrix = read_reradiation(options.matrix);
@@ -181,7 +198,6 @@ void add_colour_command(CLI::App& program, CommandContext& context) {
     command
         ->add_option("--illuminant", options->illuminants,
                      "CIE illuminants: D65,A,FL2,LED-B3; an unknown name lists them all")
-        ->delimiter(',')
         ->capture_default_str();
     CLI::Option* const e308 = command->add_flag(
         "--e308", options->e308,

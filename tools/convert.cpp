@@ -87,6 +87,11 @@ void convert_matrix(const ConvertOptions& options) {
 
 void convert_spectrum(const ConvertOptions& options) {
     refuse_form_options(options, "are for re-radiation matrices only");
+    if (const std::string ending = lower_case_ending(options.out);
+        ending != ".csv" && ending != ".spd")
+        throw_input_error({options.out.string()},
+                          fmt::format("a spectrum does not fit into '{}'", ending),
+                          "write .csv or .spd");
     const NumberTable table = read_spectrum_table(options.in);
     write_if_it_loads(
         options,
@@ -135,6 +140,8 @@ const char* convert(const ConvertOptions& options) {
 }
 
 int run_convert(const ConvertOptions& options, const CommonOptions& common) {
+    if (options.in.empty())
+        throw_input_error({}, "IN names no file", "give the file to convert");
     check_outputs(common, {{"OUT", options.out}});
     const char* const kind = convert(options);
     write_json(common.json,

@@ -3,6 +3,7 @@
 #include "host/film/spectral_image.h"
 #include "host/report/json_file.h"
 #include "host/scene/scene.h"
+#include "host/spectral/csv_lines.h"
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/scatter_warnings.h"
 #include "host/spectral/spectrum_formats.h"
@@ -87,7 +88,37 @@ Json describe_matrix(const fs::path& file) {
     return result;
 }
 
+/// True for the tables nm,n,k that metals are read from.
+bool holds_complex_index(const fs::path& file) {
+    if (text_format_of(file) != TextFormat::Table)
+        return false;
+    TextReader reader(file);
+    for (std::string_view line; reader.next_line(line);)
+        if (is_line_of_cells(line)) {
+            const std::vector<TextToken> cells = reader.split_cells(line);
+            return cells.size() == 3 && lower_case(cells[1].text) == "n" &&
+                   lower_case(cells[2].text) == "k";
+        }
+    return false;
+}
+
+Json describe_complex_index(const fs::path& file) {
+    const NumberTable table = read_number_table(file, 3);
+    const auto range = [&](std::size_t column) {
+        const auto [low, high] =
+            std::minmax_element(table.columns[column].begin(), table.columns[column].end());
+        return Json{{"lowest", *low}, {"highest", *high}};
+    };
+    return {{"kind", "complex index of refraction"},
+            {"from_nm", table.columns[0].front()},
+            {"to_nm", table.columns[0].back()},
+            {"n", range(1)},
+            {"k", range(2)}};
+}
+
 Json describe_spectrum(const fs::path& file) {
+    if (holds_complex_index(file))
+        return describe_complex_index(file);
     const NumberTable table = read_spectrum_table(file);
     const auto [low, high] = std::minmax_element(table.columns[1].begin(), table.columns[1].end());
     const double from = table.columns[0].front(), to = table.columns[0].back();

@@ -2,6 +2,7 @@
 
 #include "host/fit/measurement_reader.h"
 #include "host/measure/measure.h"
+#include "host/spectral/csv_lines.h"
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/plausible_matrix.h"
 #include "host/spectral/text_reader.h"
@@ -23,8 +24,7 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 bool is_measurement_csv(const std::filesystem::path& file) {
     TextReader reader(file);
     for (std::string_view line; reader.next_line(line);) {
-        const std::string_view text = trimmed(line);
-        if (!text.empty() && !text.starts_with('#'))
+        if (is_line_of_cells(line))
             return reader.split_cells(line)[0].text == "theta_i_deg";
     }
     return false;

@@ -1,5 +1,6 @@
 #include "host/fit/measurement_reader.h"
 
+#include "host/spectral/matrix_csv_header.h"
 #include "host/spectral/matrix_formats.h"
 #include "host/spectral/text_reader.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr std::string_view headings =
     "theta_i_deg,theta_o_deg,phi_deg,lambda_i_nm,lambda_o_nm,value,stderr,part";
+constexpr std::size_t column_count = 8;
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 struct Row {
@@ -26,24 +28,36 @@ struct Row {
 using Directions = std::tuple<double, double, double>; // theta_i, theta_o, phi in degrees
 using RowsByDirections = std::map<Directions, std::vector<Row>>;
 
+void refuse_other_unit(const TextReader& reader, const TextToken& value) {
+    const std::string unit = lower_case(value.text);
+    for (const char* right : {"1/sr", "/sr", "sr-1", "sr^-1", "per sr"})
+        if (unit == right)
+            return;
+    throw_input_error(reader.position(value),
+                      fmt::format("the unit '{}' is not of a measurement", value.text),
+                      "values are in 1/sr, where a white has 1/pi; scale them and leave the line "
+                      "out");
+}
+
 /// Values of the '#' lines that a measurement may not contradict.
 void check_header_line(const TextReader& reader, std::string_view line, BispectralData& data) {
-    const auto colon = line.find(':');
-    if (colon == std::string_view::npos)
+    const std::optional<HeaderEntry> entry = header_entry(reader, line);
+    if (!entry)
         return;
-    const std::string_view name = trimmed(line.substr(1, colon - 1));
-    const std::string_view value = trimmed(line.substr(colon + 1));
     const auto require = [&](std::string_view key, std::string_view right) {
-        if (name == key && value != right)
-            throw_input_error(
-                reader.position(reader.line_number(), static_cast<int>(colon) + 2),
-                fmt::format("{} '{}' contradicts the headings of `measure`", key, value),
-                fmt::format("its rows are {}", right));
+        if (entry->name == key && lower_case(entry->value.text) != right)
+            throw_input_error(reader.position(entry->value),
+                              fmt::format("{} '{}' contradicts the headings of `measure`", key,
+                                          entry->value.text),
+                              fmt::format("its rows are {}", right));
     };
     require("quantity", "per-band");
     require("orientation", "rows-emission");
-    if (name == "anti-stokes")
-        data.anti_stokes_allowed = value == "allowed";
+    if (entry->name == "anti-stokes")
+        data.anti_stokes_allowed = is_first_of(reader, entry->value, "allowed", "refused");
+    if (entry->name == "unit" || entry->name == "units")
+        refuse_other_unit(reader, entry->value);
+    refuse_factor(reader, *entry);
 }
 
 /// Cells with commas between them: a spreadsheet may have quoted them or taken semicolons.
@@ -65,9 +79,9 @@ double angle(const TextReader& reader, const TextToken& token, double below) {
     return degrees;
 }
 
-void read_row(const TextReader& reader, const std::vector<TextToken>& tokens,
-              RowsByDirections& rows) {
-    if (tokens.size() != 8)
+void read_row(const TextReader& reader, std::vector<TextToken> tokens, RowsByDirections& rows) {
+    drop_padding(tokens, column_count);
+    if (tokens.size() != column_count)
         throw_input_error(reader.position(tokens.back()),
                           fmt::format("{} values in this line", tokens.size()),
                           fmt::format("write {}", headings));
@@ -134,14 +148,14 @@ BispectralData read_measurement_blocks(const std::filesystem::path& file) {
     RowsByDirections rows;
     bool past_headings = false;
     for (std::string_view line; reader.next_line(line);) {
-        line = trimmed(line);
-        const std::vector<TextToken> cells = reader.split_cells(line);
-        if (line.starts_with('#'))
+        std::vector<TextToken> cells = reader.split_cells(line);
+        drop_padding(cells, 1);
+        if (is_remark(line))
             check_header_line(reader, line, data);
-        else if (line.empty())
+        else if (!is_line_of_cells(line))
             continue;
         else if (past_headings)
-            read_row(reader, cells, rows);
+            read_row(reader, std::move(cells), rows);
         else if (joined(cells) == headings)
             past_headings = true;
         else

@@ -2,6 +2,7 @@
 #include "host/scene/toml_document.h"
 #include "host/spectral/colour.h"
 #include "host/spectral/spectrum_formats.h"
+#include "host/spectral/wavelength_unit.h"
 
 #include <fmt/format.h>
 
@@ -88,9 +89,11 @@ enum class Beyond { Zero, EndValues };
 
 /// Mitsuba takes 0 beyond the samples, this program their end values: zeros are added up to
 /// Mitsuba's range of wavelengths.
-toml::table samples_of(Samples samples, Beyond beyond) {
+toml::table samples_of(Samples samples, Beyond beyond, const SourcePosition& at) {
     constexpr double from_nm = 360.0, to_nm = 830.0, edge_nm = 1e-3;
     auto& [nm, value] = samples;
+    if (!nm.empty()) // before zeros hide where the samples lie
+        require_plausible_range(nm.front(), nm.back(), UnitSource::Fixed, at);
     if (beyond == Beyond::Zero && nm.front() > from_nm + edge_nm) {
         nm.insert(nm.begin(), {from_nm, nm.front() - edge_nm});
         value.insert(value.begin(), {0.0, 0.0});
@@ -174,7 +177,8 @@ toml::table spectrum_file(const pugi::xml_node& element, const MitsubaScene& sce
     if (beyond == Beyond::EndValues)
         return toml::table{{"file", std::move(name)}};
     NumberTable table = read_spectrum_table(scene.document().file().parent_path() / given);
-    return samples_of({std::move(table.columns[0]), std::move(table.columns[1])}, beyond);
+    return samples_of({std::move(table.columns[0]), std::move(table.columns[1])}, beyond,
+                      scene.document().position(element));
 }
 
 toml::table blackbody(const MitsubaObject& spectrum) {
@@ -199,7 +203,7 @@ toml::table plugin(const pugi::xml_node& element, MitsubaScene& scene, Beyond be
     } else if (spectrum.type() == "blackbody") {
         made = blackbody(spectrum);
     } else if (spectrum.type() == "regular" || spectrum.type() == "irregular") {
-        made = samples_of(sampled(spectrum), beyond);
+        made = samples_of(sampled(spectrum), beyond, scene.document().position(element));
     } else {
         spectrum.refuse_type({"uniform", "d65", "blackbody", "regular", "irregular"});
     }
@@ -221,7 +225,7 @@ toml::table spectrum_of(const pugi::xml_node& element, MitsubaScene& scene, Beyo
     if (document.has(element, "filename"))
         return spectrum_file(element, scene, beyond);
     if (document.text(element, "value").find(':') != std::string::npos)
-        return samples_of(pairs(document, element), beyond);
+        return samples_of(pairs(document, element), beyond, document.position(element));
     return table_of({550.0}, {document.number(element, "value")});
 }
 

@@ -109,6 +109,26 @@ Spectrum read_rgb(const TableReader& reader) {
     return reflectance_from_rgb({rgb[0] / scale, rgb[1] / scale, rgb[2] / scale}).scaled(scale);
 }
 
+/// Light around one wavelength, refused where nothing of it is seen: its unit is another.
+Spectrum read_peak(const TableReader& reader, const std::string& form) {
+    const NumberRange width = NumberRange::within(1e-3, 1e4);
+    const double nm = reader.number(form, WAVELENGTH);
+    const double scale = reader.number_or("scale", 1.0, SCALE);
+    const auto require_seen = [&](double reach_nm) {
+        require_plausible_range(nm - reach_nm, nm + reach_nm, UnitSource::Fixed,
+                                reader.position_of_key(form));
+    };
+    if (form == "line_nm") {
+        const double width_nm = reader.number_or("width_nm", 1.0, width);
+        require_seen(0.5 * width_nm);
+        return Spectrum::line(nm, width_nm, scale);
+    }
+    // Five sigma from its peak a Gaussian has 4e-6 of it.
+    const double sigma_nm = reader.number("sigma_nm", width);
+    require_seen(5.0 * sigma_nm);
+    return Spectrum::gaussian(nm, sigma_nm, scale);
+}
+
 Spectrum read_form(const TableReader& reader, const std::string& form, LoadState& state) {
     if (form == "nm")
         return read_table(reader);
@@ -121,14 +141,7 @@ Spectrum read_form(const TableReader& reader, const std::string& form, LoadState
         return read_illuminant(reader);
     if (form == "blackbody_kelvin")
         return read_blackbody(reader);
-    const NumberRange width = NumberRange::within(1e-3, 1e4);
-    if (form == "line_nm")
-        return Spectrum::line(reader.number("line_nm", WAVELENGTH),
-                              reader.number_or("width_nm", 1.0, width),
-                              reader.number_or("scale", 1.0, SCALE));
-    return Spectrum::gaussian(reader.number("gaussian_nm", WAVELENGTH),
-                              reader.number("sigma_nm", width),
-                              reader.number_or("scale", 1.0, SCALE));
+    return read_peak(reader, form);
 }
 
 Spectrum read_node(const toml::node& node, const std::string& file, const SourcePosition& at,

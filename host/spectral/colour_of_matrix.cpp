@@ -17,6 +17,8 @@ namespace {
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 /// Range of the weights of ASTM E308.
 constexpr int e308_from_nm = 360, e308_to_nm = 780;
+/// A colour leaves out less without a word.
+constexpr double least_unseen_white = 0.001;
 
 /// Colour matching functions at a wavelength; zero outside 360-830 nm.
 Xyz observer_at(double nm) {
@@ -219,6 +221,41 @@ MatrixColour colour_from(const Sums& sums) {
     return colour;
 }
 
+/// The largest share of X, Y and Z of the lamp's white that lies beyond the emission bands.
+double unseen_white(const WavelengthGrid& bands, const Spectrum& illuminant) {
+    const double from_nm = bands.lower_edge_nm(0), to_nm = bands.upper_edge_nm(bands.count - 1);
+    const LampAtNanometres lamp(illuminant);
+    Xyz unseen{}, whole{};
+    for (int nm = e308_from_nm; nm <= e308_to_nm; ++nm) {
+        const Xyz eye = observer_at(nm);
+        add(whole, eye, lamp(nm));
+        if (nm < from_nm || nm > to_nm)
+            add(unseen, eye, lamp(nm));
+    }
+    double share = 0.0;
+    for (std::size_t c = 0; c < 3; ++c)
+        if (whole[c] > 0.0)
+            share = std::max(share, unseen[c] / whole[c]);
+    return share;
+}
+
+/// Where the excitation bands leave out the reflectance of emission bands; empty where they do not.
+std::string unknown_reflectance(const ReradiationMatrix& matrix) {
+    const WavelengthGrid& bands = matrix.excitation;
+    const double missing =
+        std::max(bands.from_nm - matrix.emission.from_nm, matrix.emission.to_nm() - bands.to_nm());
+    const double from_nm = std::max(bands.from_nm, matrix.emission.from_nm),
+                 to_nm = std::min(bands.to_nm(), matrix.emission.to_nm());
+    if (missing <= 0.5 * bands.step_nm)
+        return {};
+    if (from_nm > to_nm)
+        return "no wavelength is both an emission and an excitation band: the reflectance is not "
+               "known and counts as 0";
+    return fmt::format("reflectance is known from {:.6g} to {:.6g} nm only and carried on from "
+                       "there as constant",
+                       from_nm, to_nm);
+}
+
 } // namespace
 
 LampError plain_sums_misjudge(const ReradiationMatrix& matrix, const Spectrum& illuminant) {
@@ -232,7 +269,8 @@ LampError plain_sums_misjudge(const ReradiationMatrix& matrix, const Spectrum& i
         if (whole > 0.0 && std::abs(off) / whole > error.share)
             error = {std::abs(off) / whole, of};
     };
-    constexpr std::array names = {"white (X)", "white (Y)", "white (Z)"};
+    constexpr std::array names = {"lamp's own white (X)", "lamp's own white (Y)",
+                                  "lamp's own white (Z)"};
     for (std::size_t c = 0; c < 3; ++c)
         take(at_bands.white[c] - at_nanometres.white[c], at_nanometres.white[c], names[c]);
     take(at_bands.luminescent[1] - at_nanometres.luminescent[1],
@@ -260,7 +298,7 @@ MatrixColour colour_of_matrix(const ReradiationMatrix& matrix, const Spectrum& i
     colour.at_nanometres = at_nanometres;
     if (chosen)
         colour.reason = fmt::format("summed over 1 nm: plain sums at the bands would misjudge the "
-                                    "lamp's own {} by {:.3g} %",
+                                    "{} by {:.3g} %",
                                     error.of, 100.0 * error.share);
     fill_radiance_factors(colour, bands, exitance, illuminant);
     return colour;
@@ -280,13 +318,14 @@ std::vector<std::string> colour_warnings(const ReradiationMatrix& matrix,
             "the table of {} starts at {:.6g} nm: the fluorescence of {} excitation "
             "band{} from {:.6g} nm counts as dark",
             name, illuminant.data_from_nm(), dark, dark == 1 ? "" : "s", bands.from_nm));
-    const double missing =
-        std::max(bands.from_nm - matrix.emission.from_nm, matrix.emission.to_nm() - bands.to_nm());
-    if (missing > 0.5 * bands.step_nm)
-        warnings.push_back(fmt::format("reflectance is known from {:.6g} to {:.6g} nm only and "
-                                       "carried on from there as constant",
-                                       std::max(bands.from_nm, matrix.emission.from_nm),
-                                       std::min(bands.to_nm(), matrix.emission.to_nm())));
+    if (const std::string unknown = unknown_reflectance(matrix); !unknown.empty())
+        warnings.push_back(unknown);
+    const double unseen = unseen_white(matrix.emission, illuminant);
+    if (!reaches_far_enough(matrix.emission) && unseen > least_unseen_white)
+        warnings.push_back(fmt::format(
+            "the emission bands end at {:.6g} and {:.6g} nm: up to {:.3g} % of the white (X, Y or "
+            "Z) of {} lies outside, where the sample's colour is not known",
+            matrix.emission.from_nm, matrix.emission.to_nm(), 100.0 * unseen, name));
     return warnings;
 }
 

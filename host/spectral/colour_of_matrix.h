@@ -30,7 +30,7 @@ enum class ColourSum {
 /// miss is off by per cents, a smooth one on bands of 10 nm by less than 0.11 %.
 struct LampError {
     double share = 0.0;
-    std::string of; ///< "white (Z)" or "fluorescence"
+    std::string of; ///< "lamp's own white (Z)" or "fluorescence"
 };
 LampError plain_sums_misjudge(const ReradiationMatrix& matrix, const Spectrum& illuminant);
 /// Beyond this Automatic sums over 1 nm.
@@ -62,7 +62,8 @@ MatrixColour colour_of_matrix(const ReradiationMatrix& matrix, const Spectrum& i
                               ColourSum sum);
 
 /// What a reader of the colour must know: excitation below the start of the illuminant's table (380
-/// nm for lamps) is dark, reflectance goes on beyond the excitation bands, scatter stands out.
+/// nm for lamps) is dark, reflectance goes on beyond the excitation bands, the emission bands leave
+/// out a part of the lamp's white, scatter stands out.
 std::vector<std::string> colour_warnings(const ReradiationMatrix& matrix,
                                          const Spectrum& illuminant, const std::string& name);
 

@@ -1,4 +1,4 @@
-#include "host/atomic_file.h"
+#include "host/spectral/csv_lines.h"
 #include "host/spectral/matrix_csv_header.h"
 #include "host/spectral/matrix_formats.h"
 #include "host/spectral/matrix_io.h"
@@ -25,21 +25,23 @@ struct CsvBody {
 /// Reads the cells of a line, and what stands in them.
 class CellReader {
 public:
-    CellReader(TextReader& reader, const WavelengthUnit& unit, Gaps gaps)
-        : reader_(reader), unit_(unit), gaps_(gaps) {}
+    /// What '#' lines say below the headings counts too.
+    CellReader(TextReader& reader, CsvHeader& header, const WavelengthUnit& unit, Gaps gaps)
+        : reader_(reader), header_(header), unit_(unit), gaps_(gaps) {}
 
-    /// Cells of the next line that has any, comments skipped; empty behind the last. Spreadsheets
-    /// fill lines up with empty cells: those beyond `most` are dropped.
+    /// Cells of the next line that has any; empty behind the last. Empty cells beyond `most` are
+    /// dropped.
     std::vector<TextToken> next(std::size_t most) {
         for (std::string_view line; reader_.next_line(line);) {
-            if (trimmed(line).starts_with('#'))
+            if (is_remark(line)) {
+                read_csv_header_line(reader_, line, header_);
                 continue;
+            }
             std::vector<TextToken> cells = reader_.split_cells(line);
             const bool has_any = std::any_of(cells.begin(), cells.end(), [](const TextToken& cell) {
                 return !cell.text.empty();
             });
-            while (cells.size() > most && cells.back().text.empty())
-                cells.pop_back();
+            drop_padding(cells, most);
             if (has_any)
                 return cells;
         }
@@ -62,6 +64,7 @@ public:
 
 private:
     TextReader& reader_;
+    CsvHeader& header_;
     WavelengthUnit unit_;
     Gaps gaps_;
 };
@@ -81,8 +84,6 @@ CsvBody sorted_body(std::vector<PlacedWavelength> rows, std::vector<PlacedWavele
 
 CsvBody read_wide(CellReader& cells, std::vector<TextToken> headings, bool rows_are_emission) {
     const TextReader& reader = cells.reader();
-    while (headings.size() > 1 && headings.back().text.empty())
-        headings.pop_back();
     if (headings.size() < 2)
         throw_input_error(reader.position(headings[0]), "no wavelengths in the line of headings",
                           "write 'nm,300,310,...'");
@@ -117,7 +118,31 @@ struct LongEntry {
 };
 using LongEntries = std::map<std::pair<double, double>, LongEntry>; // (emission, excitation)
 
-LongEntries read_long_entries(CellReader& cells) {
+/// Which columns of the long form hold what.
+struct LongColumns {
+    std::size_t excitation = 0, emission = 1, value = 2;
+};
+
+/// Empty for headings of the wide form. Input Error where a column of the long form lacks.
+std::optional<LongColumns> long_columns(const TextReader& reader,
+                                        const std::vector<TextToken>& headings) {
+    if (!names_long_form(headings))
+        return std::nullopt;
+    const auto column = [&](std::string_view name) {
+        return static_cast<std::size_t>(std::find_if(headings.begin(), headings.end(),
+                                                     [&](const TextToken& heading) {
+                                                         return lower_case(heading.text) == name;
+                                                     }) -
+                                        headings.begin());
+    };
+    const LongColumns columns{column("excitation_nm"), column("emission_nm"), column("value")};
+    if (headings.size() != 3 || columns.excitation + columns.emission + columns.value != 3)
+        throw_input_error(reader.position(headings[0]), "these headings are not known",
+                          "write excitation_nm,emission_nm,value");
+    return columns;
+}
+
+LongEntries read_long_entries(CellReader& cells, const LongColumns& columns) {
     const TextReader& reader = cells.reader();
     LongEntries entries;
     for (auto tokens = cells.next(3); !tokens.empty(); tokens = cells.next(3)) {
@@ -125,8 +150,9 @@ LongEntries read_long_entries(CellReader& cells) {
             throw_input_error(reader.position(tokens.back()),
                               fmt::format("{} values in this line", tokens.size()),
                               "write excitation_nm,emission_nm,value");
-        const LongEntry entry{cells.value(tokens[2]), cells.wavelength(tokens[1]),
-                              cells.wavelength(tokens[0])};
+        const LongEntry entry{cells.value(tokens[columns.value]),
+                              cells.wavelength(tokens[columns.emission]),
+                              cells.wavelength(tokens[columns.excitation])};
         if (!entries.emplace(std::pair{entry.emission.nm, entry.excitation.nm}, entry).second)
             throw_input_error(entry.excitation.position,
                               fmt::format("excitation {} nm, emission {} nm is given twice",
@@ -140,8 +166,8 @@ LongEntries read_long_entries(CellReader& cells) {
     return entries;
 }
 
-CsvBody read_long(CellReader& cells, Gaps gaps) {
-    const LongEntries entries = read_long_entries(cells);
+CsvBody read_long(CellReader& cells, const LongColumns& columns, Gaps gaps) {
+    const LongEntries entries = read_long_entries(cells, columns);
     const TextReader& reader = cells.reader();
     std::map<double, PlacedWavelength> emission, excitation;
     for (const auto& [key, entry] : entries) {
@@ -181,6 +207,7 @@ ReradiationMatrix assemble(const CsvHeader& header, CsvBody body) {
     const auto spacing = [](const std::vector<PlacedWavelength>& axis) {
         return axis.size() > 1 && axis[1].nm > axis[0].nm ? axis[1].nm - axis[0].nm : 1.0;
     };
+    require_consistent_unit(header);
     ReradiationMatrix matrix;
     // An axis of one band is as wide as it says, else as the other axis's bands.
     matrix.emission = axis_grid(body.emission, "emission",
@@ -211,77 +238,34 @@ WavelengthUnit axis_unit(const TextReader& reader, const TextToken& heading) {
     return unit.value_or(WavelengthUnit{});
 }
 
-std::string header_text(const ReradiationMatrix& matrix, const MatrixCsvForm& form) {
-    std::string text =
-        fmt::format("# reradiation\n# quantity: {}\n# orientation: {}\n# kind: {}\n",
-                    form.quantity == MatrixQuantity::PerBand ? "per-band" : "density-per-nm",
-                    form.rows_are_emission ? "rows-emission" : "rows-excitation",
-                    matrix.kind == MatrixKind::Model ? "model" : "measured");
-    std::string geometry = matrix.geometry;
-    std::replace_if(
-        geometry.begin(), geometry.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    if (!geometry.empty())
-        text += fmt::format("# geometry: {}\n", geometry);
-    if (matrix.anti_stokes_allowed)
-        text += "# anti-stokes: allowed\n";
-    if (matrix.emission.count == 1)
-        text += fmt::format("# emission-step-nm: {}\n", matrix.emission.step_nm);
-    if (matrix.excitation.count == 1)
-        text += fmt::format("# excitation-step-nm: {}\n", matrix.excitation.step_nm);
-    return text;
-}
-
 } // namespace
 
 ReradiationMatrix read_matrix_csv(const std::filesystem::path& file, Gaps gaps) {
     TextReader reader(file);
     CsvHeader header;
     for (std::string_view line; reader.next_line(line);) {
-        if (trimmed(line).empty())
-            continue;
-        if (trimmed(line).starts_with('#')) {
+        if (is_remark(line))
             read_csv_header_line(reader, line, header);
+        if (!is_line_of_cells(line))
             continue;
-        }
+        std::vector<TextToken> headings = reader.split_cells(line);
+        drop_padding(headings, 1);
+        if (!header.quantity && !header.rows_are_emission && is_title(headings))
+            continue;
         require_declared(reader, header);
-        const std::vector<TextToken> headings = reader.split_cells(line);
-        const bool is_long = headings[0].text == "excitation_nm";
-        if (is_long && (headings.size() != 3 || headings[1].text != "emission_nm" ||
-                        headings[2].text != "value"))
-            throw_input_error(reader.position(headings[0]), "these headings are not known",
-                              "write excitation_nm,emission_nm,value");
-        CellReader cells(reader, is_long ? WavelengthUnit{} : axis_unit(reader, headings[0]), gaps);
-        const ReradiationMatrix matrix =
-            assemble(header, is_long ? read_long(cells, gaps)
-                                     : read_wide(cells, headings, *header.rows_are_emission));
+        const std::optional<LongColumns> columns = long_columns(reader, headings);
+        if (!columns)
+            read_value_unit(reader, headings[0], header);
+        CellReader cells(reader, header,
+                         columns ? WavelengthUnit{} : axis_unit(reader, headings[0]), gaps);
+        CsvBody body = columns ? read_long(cells, *columns, gaps)
+                               : read_wide(cells, headings, *header.rows_are_emission);
+        const ReradiationMatrix matrix = assemble(header, std::move(body));
         refuse_undeclared_anti_stokes(matrix, reader.position(headings[0]));
         return matrix;
     }
     throw_input_error(reader.end_position(), "no matrix in this file",
                       "see 'Re-radiation CSV' in the README");
-}
-
-void write_reradiation_csv(const std::filesystem::path& file, const ReradiationMatrix& matrix,
-                           const MatrixCsvForm& form) {
-    ReradiationMatrix scaled = matrix;
-    if (form.quantity == MatrixQuantity::DensityPerNm)
-        scale_off_diagonal(scaled, 1.0 / matrix.excitation.step_nm);
-    const Eigen::MatrixXd table =
-        form.rows_are_emission ? scaled.values : Eigen::MatrixXd(scaled.values.transpose());
-    const WavelengthGrid& rows = form.rows_are_emission ? matrix.emission : matrix.excitation;
-    const WavelengthGrid& columns = form.rows_are_emission ? matrix.excitation : matrix.emission;
-    std::string text = header_text(matrix, form) + "nm";
-    for (int column = 0; column < columns.count; ++column)
-        text += fmt::format(",{}", columns.centre_nm(column));
-    text += '\n';
-    for (int row = 0; row < rows.count; ++row) {
-        text += fmt::format("{}", rows.centre_nm(row));
-        // fmt prints the shortest text that reads back as the same double.
-        for (int column = 0; column < columns.count; ++column)
-            text += fmt::format(",{}", table(row, column));
-        text += '\n';
-    }
-    write_text_atomically(file, text);
 }
 
 } // namespace reradiant

@@ -4,6 +4,7 @@
 #include "host/spectral/matrix_io.h"
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -38,6 +39,9 @@ void scale_off_diagonal(ReradiationMatrix& matrix, double factor);
 /// Input Error at the file for a model with an entry below its excitation and no leave for it.
 void refuse_undeclared_anti_stokes(const ReradiationMatrix& matrix, const SourcePosition& position);
 
+/// Where a table says that it is a re-radiation CSV: in a line `# reradiation`, by its quantity or
+/// orientation, or by the headings of the long form. Empty for a spectrum.
+std::optional<SourcePosition> declares_reradiation(const std::filesystem::path& file);
 ReradiationMatrix read_matrix_csv(const std::filesystem::path& file, Gaps gaps = Gaps::Refused);
 ReradiationMatrix read_matrix_bfc(const std::filesystem::path& file);
 ReradiationMatrix read_matrix_exr(const std::filesystem::path& file);

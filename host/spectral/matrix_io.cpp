@@ -2,7 +2,7 @@
 
 #include "host/spectral/matrix_formats.h"
 #include "host/spectral/plausible_matrix.h"
-#include "host/spectral/text_reader.h"
+#include "host/spectral/text_format.h"
 
 #include <fmt/format.h>
 
@@ -66,21 +66,7 @@ bool holds_reradiation(const std::filesystem::path& file) {
     const std::string ending = lower_case_ending(file);
     if (ending == ".bfc" || ending == ".exr")
         return true;
-    if (text_format_of(file) != TextFormat::Table)
-        return false;
-    TextReader reader(file);
-    for (std::string_view line; reader.next_line(line);) {
-        line = trimmed(line);
-        if (line.empty())
-            continue;
-        if (!line.starts_with('#'))
-            return line.starts_with("excitation_nm");
-        line = trimmed(line.substr(1));
-        if (line == "reradiation" || line.starts_with("quantity:") ||
-            line.starts_with("orientation:"))
-            return true;
-    }
-    return false;
+    return text_format_of(file) == TextFormat::Table && declares_reradiation(file).has_value();
 }
 
 ReradiationMatrix read_reradiation(const std::filesystem::path& file, Gaps gaps) {

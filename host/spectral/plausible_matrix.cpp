@@ -1,6 +1,7 @@
 #include "host/spectral/plausible_matrix.h"
 
 #include "host/error.h"
+#include "host/spectral/matrix_csv_header.h"
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/text_reader.h"
 
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <system_error>
 #include <vector>
 
@@ -17,6 +19,7 @@ namespace {
 
 constexpr double shortest_nm = 100.0, longest_nm = 3000.0;
 constexpr double largest_value = 10.0, largest_median_energy = 2.0;
+constexpr std::size_t most_cells = std::numeric_limits<std::size_t>::max();
 constexpr const char* remedy =
     "values have unit 1; divide percent by 100 or write '# unit: percent'";
 
@@ -26,18 +29,26 @@ SourcePosition place_of_large_value(const std::filesystem::path& file) {
     if (lower_case_ending(file) != ".csv" || !std::filesystem::exists(file, ignored))
         return {file.string()};
     TextReader reader(file);
-    std::size_t first = 0; // cell of a row that holds a value; 0 before the headings
+    std::size_t first = 0, end = 0; // cells of a row that hold values; none before the headings
     for (std::string_view line; reader.next_line(line);) {
-        if (trimmed(line).empty() || trimmed(line).starts_with('#'))
+        if (!is_line_of_cells(line))
             continue;
         const std::vector<TextToken> tokens = reader.split_cells(line);
-        if (first == 0) {
-            // The long forms have wavelengths and angles first, the wide one a wavelength.
-            const std::string_view heading = tokens[0].text;
-            first = heading == "excitation_nm" ? 2 : heading == "theta_i_deg" ? 5 : 1;
+        if (end == 0) {
+            // Long forms name the column of their values, behind which their errors follow.
+            const bool is_measurement = tokens[0].text == "theta_i_deg";
+            if (is_title(tokens) && !is_measurement)
+                continue;
+            const bool is_long = is_measurement || names_long_form(tokens);
+            const auto value =
+                std::find_if(tokens.begin(), tokens.end(), [](const TextToken& heading) {
+                    return lower_case(heading.text) == "value";
+                });
+            first = is_long ? static_cast<std::size_t>(value - tokens.begin()) : 1;
+            end = is_measurement ? tokens.size() : is_long ? first + 1 : most_cells;
             continue;
         }
-        for (std::size_t k = first; k < tokens.size(); ++k)
+        for (std::size_t k = first; k < std::min(end, tokens.size()); ++k)
             if (!is_gap(tokens[k].text) && is_number(tokens[k].text) &&
                 std::abs(reader.number(tokens[k])) > largest_value)
                 return reader.position(tokens[k]);

@@ -1,4 +1,5 @@
 #include "host/atomic_file.h"
+#include "host/spectral/matrix_formats.h"
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/spectrum_formats.h"
 #include "host/spectral/text_format.h"
@@ -17,6 +18,11 @@ NumberTable read_spectrum_table(const std::filesystem::path& file) {
         return read_cgats(file);
     case TextFormat::Tm27:
         return read_tm27(file);
+    case TextFormat::Table:
+        if (const auto at = declares_reradiation(file))
+            throw_input_error(*at, "the file is a re-radiation matrix, not a spectrum",
+                              "give it where a re-radiation matrix is asked for");
+        return read_number_table(file, 2);
     default: // read_number_table refuses by name what is no table
         return read_number_table(file, 2);
     }

@@ -101,6 +101,23 @@ TEST_F(DataTest, MeasurementsBecomeBlocksOfRadianceFactors) {
     EXPECT_TRUE(std::isnan(data.blocks[1].value(1, 0)));
 }
 
+TEST_F(DataTest, MeasurementsOfSpreadsheetsAndTheirUnits) {
+    const std::string row = "45,0,0,400,400,0.1,0.01,diffuse\n";
+    const std::string padded =
+        "sep=,\n\"# measure, model full\",,\n\"# Quantity: Per-Band\",,\n"
+        "theta_i_deg,theta_o_deg,phi_deg,lambda_i_nm,lambda_o_nm,value,stderr,part,,\n"
+        "45,0,0,400,400,0.1,0.01,diffuse,,\n,,,,,,,,,\n";
+    for (const std::string& text :
+         {padded, "# Anti-Stokes = refused\n# unit: 1/sr\n" + measure_headings + row})
+        EXPECT_NEAR(read(text).blocks.at(0).value(0, 0), 0.1 * 3.14159265358979, 1e-12) << text;
+    expect_refused("# unit: percent\n" + measure_headings + row, "1:9", "1/sr");
+    expect_refused(measure_headings + row + "# Units = counts\n", "3:11", "counts");
+    expect_refused("# factor: 2\n" + measure_headings + row, "1:3", "factor");
+    expect_refused("# Orientation: rows-excitation\n" + measure_headings + row, "1:16",
+                   "contradicts");
+    expect_refused("# anti-stokes: perhaps\n" + measure_headings + row, "1:16", "perhaps");
+}
+
 TEST_F(DataTest, BlocksSurviveWritingAndReading) {
     BispectralData data = noisy_data(true_matrix(two_fluorophores()), 0.01, true, 1);
     data.blocks[0].geometry = {45.0, 10.0, 180.0};
@@ -128,7 +145,7 @@ TEST_F(DataTest, BadInputIsRefusedAtItsPlace) {
                    "3:16", "percent");
     expect_refused("##TITLE= x\n", "1:1", "JCAMP-DX");
     expect_refused(header + "nm,400\n400,nan\n", "1:1", "no entry was measured");
-    expect_refused("# quantity: density-per-nm\n" + measure_headings, "1:12", "contradicts");
+    expect_refused("# quantity: density-per-nm\n" + measure_headings, "1:13", "contradicts");
     expect_refused(measure_headings +
                        "45,0,0,400,400,0.1,0,diffuse\n45,0,0,400,400,0.1,0,diffuse\n",
                    "3:8", "twice");

@@ -142,6 +142,18 @@ class Objects(unittest.TestCase):
         with self.assertRaises(ValueError):
             matrix.values[0, 0] = 2
 
+    def test_axes_may_descend_and_be_rounded(self):
+        third = rr.Reradiation(np.diag([0.1, 0.2, 0.3]), [383.33, 386.67, 390], [383.33, 386.67, 390])
+        self.assertAlmostEqual(third.emission_nm[0], 383 + 1 / 3, places=12)
+        self.assertEqual(third.emission_nm[2], 390)
+        single = np.array([383.33, 386.67, 390], np.float32)
+        np.testing.assert_array_equal(
+            rr.Reradiation(np.eye(3), single, single).emission_nm, third.emission_nm)
+        values = np.array([[0.5, 0.0], [0.2, 0.6]])
+        turned = rr.Reradiation(values[::-1, ::-1], [500, 400], [500, 400])
+        np.testing.assert_array_equal(turned.values, values)
+        self.assertEqual(turned.emission_nm.tolist(), [400, 500])
+
     def test_density_form(self):
         nm = np.arange(400, 441, 10)
         density = np.diag(np.full(5, 0.3)) + np.tril(np.full((5, 5), 0.002), -1)

@@ -271,7 +271,16 @@ TEST_F(Mitsuba, WhatTheSceneReaderRefusesIsPlacedInTheXml) {
                 "name=\"wavelength_max\" value=\"400\"/><string name=\"values\" value=\"1, 2\"/>"
                 "</spectrum>",
                 "follows 700 nm", 84);
-    expect_lamp("value=\"0.001:1, 0.002:1\"/>", "nm[0]", 1);
+    // The unit is checked on the samples, before zeros from 360 to 830 nm join them.
+    expect_lamp("value=\"0.001:1, 0.002:1\"/>", "cannot be in nm", 1);
+    expect_lamp("value=\"4000:1, 7000:1\"/>", "cannot be in nm", 1);
+    expect_lamp("type=\"irregular\"><string name=\"wavelengths\" value=\"4000, 7000\"/>"
+                "<string name=\"values\" value=\"1, 2\"/></spectrum>",
+                "from 4000 to 7000 cannot be in nm", 1);
+    expect_lamp("type=\"regular\"><float name=\"wavelength_min\" value=\"0.4\"/><float "
+                "name=\"wavelength_max\" value=\"0.7\"/><string name=\"values\" value=\"1, 2\"/>"
+                "</spectrum>",
+                "cannot be in nm", 1);
     expect_lamp("value=\"400:-1, 500:1\"/>", "down to -1", 1);
     expect_lamp("type=\"blackbody\"><float name=\"temperature\" value=\"1\"/></spectrum>",
                 "blackbody of 1 K", 1);

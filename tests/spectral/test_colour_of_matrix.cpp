@@ -2,6 +2,7 @@
 #include "host/spectral/matrix_io.h"
 #include "tests/spectral/synthetic_recipes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -271,6 +272,36 @@ TEST(ColourOfMatrix, WarnsOfUnlitExcitationAndOfUnknownReflectance) {
     const auto unknown = colour_warnings(cut, illuminant("D65"), "D65");
     ASSERT_EQ(unknown.size(), 1u);
     EXPECT_NE(unknown[0].find("300 to 600 nm"), std::string::npos) << unknown[0];
+}
+
+TEST(ColourOfMatrix, WarnsOfWhiteThatTheBandsDoNotSee) {
+    ReradiationMatrix cut;
+    cut.emission = cut.excitation = {380.0, 10.0, 19}; // to 560 nm
+    cut.values = 0.5 * Eigen::MatrixXd::Identity(19, 19);
+    const auto warnings = colour_warnings(cut, illuminant("E"), "E");
+    ASSERT_EQ(warnings.size(), 1u);
+    const ColourMatching& eye = cie_1931_2_degree();
+    double beyond = 0.0, whole = 0.0; // of X, of which most lies in the red
+    for (std::size_t k = 0; k <= 420; ++k) {
+        whole += eye.x[k];
+        if (k > 205 || k < 15)
+            beyond += eye.x[k];
+    }
+    EXPECT_NE(warnings[0].find(fmt::format("{:.3g} % of the white", 100.0 * beyond / whole)),
+              std::string::npos)
+        << warnings[0];
+    // From 400 to 700 nm the standards carry the ends on.
+    cut.emission = cut.excitation = {400.0, 20.0, 16};
+    cut.values = 0.5 * Eigen::MatrixXd::Identity(16, 16);
+    EXPECT_TRUE(colour_warnings(cut, illuminant("E"), "E").empty());
+    ReradiationMatrix apart;
+    apart.excitation = {300.0, 10.0, 11};
+    apart.emission = {420.0, 10.0, 31};
+    apart.values = Eigen::MatrixXd::Constant(31, 11, 0.01);
+    const auto unknown = colour_warnings(apart, illuminant("E"), "E");
+    ASSERT_FALSE(unknown.empty());
+    EXPECT_NE(unknown[0].find("reflectance is not known and counts as 0"), std::string::npos)
+        << unknown[0];
 }
 
 TEST(ColourOfMatrix, BandsOutsideTheVisibleAreRefused) {

@@ -52,6 +52,26 @@ TEST_F(ForeignFiles, SpectraOfOtherFormatsAreReadWhateverTheirEnding) {
         }
 }
 
+TEST_F(ForeignFiles, ConvertNamesTheFileThatItCannotWriteOrRead) {
+    put("s.csv", "nm,value\n400,0.4\n500,0.5\n");
+    const ProgramResult ending = run("convert s.csv x.txt");
+    EXPECT_EQ(ending.exit_code, 2);
+    EXPECT_EQ(ending.errors.find("partial"), std::string::npos) << ending.errors;
+    EXPECT_NE(ending.errors.find("x.txt: a spectrum does not fit"), std::string::npos)
+        << ending.errors;
+    const ProgramResult nameless = run("convert \"\" x.csv");
+    EXPECT_EQ(nameless.exit_code, 2);
+    EXPECT_NE(nameless.errors.find("IN names no file"), std::string::npos) << nameless.errors;
+}
+
+TEST_F(ForeignFiles, MetalsAreDescribed) {
+    const auto json = json_of("info " RERADIANT_SOURCE_DIR "/spectra/metals/aluminium.csv");
+    EXPECT_EQ(json["kind"], "complex index of refraction");
+    EXPECT_EQ(json["from_nm"], 247.97);
+    EXPECT_EQ(json["n"]["lowest"], 0.18137);
+    EXPECT_GT(json["k"]["highest"], 8.0);
+}
+
 TEST_F(ForeignFiles, OnePointIsDescribedAsItIs) {
     put("s.spd", "555 0.5\n"); // a constant, whose range has no end
     for (const char* command : {"info s.spd", "validate s.spd"}) {

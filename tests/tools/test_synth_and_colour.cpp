@@ -119,3 +119,12 @@ TEST_F(SynthAndColour, BadInputIsExitTwoAtItsPlace) {
 TEST_F(SynthAndColour, Case53FullDiskIsExitOne) {
     expect_failure(1, "colour " + matrices + "synthetic-orange.csv --json /dev/full", "/dev/full");
 }
+
+TEST_F(SynthAndColour, AnEmptyNameOfAnIlluminantIsRefused) {
+    for (const char* names : {"D65,,A", "D65,", ",A", "\"\""}) {
+        const ProgramResult result =
+            run("colour " + matrices + "synthetic-orange.csv --illuminant " + names);
+        EXPECT_EQ(result.exit_code, 2) << names;
+        EXPECT_NE(result.errors.find("a name is missing"), std::string::npos) << result.errors;
+    }
+}

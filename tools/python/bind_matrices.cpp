@@ -4,6 +4,7 @@
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/plausible_matrix.h"
 #include "host/spectral/reradiation.h"
+#include "host/spectral/rounded_grid.h"
 #include "tools/python/bindings.h"
 #include "tools/python/values.h"
 
@@ -12,6 +13,7 @@
 
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
 namespace py = pybind11;
 
@@ -85,9 +87,22 @@ py::object colour(const ReradiationMatrix& matrix, const std::string& name, cons
     return python_value(colour_report_json(report));
 }
 
+/// None for ascending centres that are not equally spaced within their rounding.
+py::object rounded_grid(const Doubles& centres_nm, double rounding_nm) {
+    std::vector<RoundedWavelength> centres;
+    for (const double nm : to_vector(centres_nm))
+        centres.push_back({nm, rounding_nm});
+    try {
+        return grid_tuple(grid_from_rounded_centres(centres));
+    } catch (const std::invalid_argument&) {
+        return py::none();
+    }
+}
+
 } // namespace
 
 void bind_matrices(py::module_& module) {
+    module.def("rounded_grid", &rounded_grid);
     py::class_<ReradiationMatrix, MatrixPointer>(module, "ReradiationMatrix")
         .def(py::init(&make_matrix))
         .def_static("from_fluorophores", &from_fluorophores)

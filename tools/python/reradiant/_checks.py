@@ -9,6 +9,7 @@ from typing import Any, Optional, Sequence, Tuple
 
 import numpy as np
 
+from . import _library
 from .errors import InputError
 
 LARGEST_SEED = 2**32 - 1
@@ -153,16 +154,38 @@ def angles(name: str, value: Any, high: float, high_is_allowed: bool) -> np.ndar
 
 
 def grid(name: str, centres: Any) -> tuple:
-    """(first centre, step, count) of centres in nm that ascend in equal steps."""
-    nm = array(name, centres, 1)
+    """(first centre, step, count) of centres in nm that ascend in equal steps, perhaps rounded."""
+    nm = array(name, _as_written(centres), 1)
     if nm.size == 1:
         return float(nm[0]), 1.0, 1
-    step = (nm[-1] - nm[0]) / (nm.size - 1)
-    uneven = np.abs(nm - (nm[0] + step * np.arange(nm.size))) > 1e-6 * abs(step)
-    if not step > 0 or uneven.any() or not nm[0] > 0:
+    rounding = min(_half_last_digit(x) for x in nm)
+    ascends = (np.diff(nm) > 0).all() and nm[0] > 0
+    found = _library.rounded_grid(nm, rounding) if ascends else None
+    if found is None:
         raise refuse(name, "does not ascend in equal steps from above 0",
                      "give the centres of equal bands in nm")
-    return float(nm[0]), float(step), int(nm.size)
+    return found
+
+
+def sorted_axis(name: str, centres: Any) -> Tuple[np.ndarray, np.ndarray]:
+    """Centres in nm that ascend, and the order that the values along them must be taken in."""
+    nm = array(name, _as_written(centres), 1)
+    order = np.argsort(nm, kind="stable")
+    return nm[order], order
+
+
+def _as_written(centres: Any) -> Any:
+    """Single precision as the decimals that it stands for: 383.33 rather than 383.32998657."""
+    given = np.asarray(centres) if hasattr(centres, "dtype") else None
+    if given is None or given.dtype != np.float32 or np.ma.isMaskedArray(centres):
+        return centres
+    return np.array([float(str(x)) for x in given.ravel()]).reshape(given.shape)
+
+
+def _half_last_digit(number: float) -> float:
+    """0.005 for 383.33."""
+    digits = np.format_float_positional(number, trim="-")
+    return 0.5 * 10.0 ** -len(digits.partition(".")[2])
 
 
 def bands(value: Any) -> Optional[tuple]:

@@ -20,7 +20,8 @@ class Reradiation:
         Unit 1; the entry where both wavelengths agree is the reflectance. Of a measurement, entries
         that are NaN, None, pandas.NA or masked were not measured: `fit` does without them.
     emission_nm, excitation_nm : array_like
-        Centres of the bands in nm, in equal steps.
+        Centres of the bands in nm, in equal steps, in any order; they may be rounded (383.33,
+        386.67, 390).
     quantity : "per-band" or "density-per-nm"
         What `values` are: a density (1/nm off the diagonal) is multiplied by the excitation step.
     measured : bool
@@ -53,12 +54,15 @@ class Reradiation:
                  anti_stokes: bool = False) -> None:
         is_measured = _checks.flag("measured", measured)
         numbers = _checks.array("values", values, 2, gaps=is_measured)
+        emission_nm, rows = _checks.sorted_axis("emission_nm", emission_nm)
+        excitation_nm, columns = _checks.sorted_axis("excitation_nm", excitation_nm)
         emission = _checks.grid("emission_nm", emission_nm)
         excitation = _checks.grid("excitation_nm", excitation_nm)
         if numbers.shape != (emission[2], excitation[2]):
             raise _checks.refuse(
                 "values", f"has shape {numbers.shape}",
                 f"give (emission, excitation) = ({emission[2]}, {excitation[2]})")
+        numbers = np.ascontiguousarray(numbers[np.ix_(rows, columns)])
         if _checks.choice("quantity", quantity, ["per-band", "density-per-nm"]) != "per-band":
             off = ~np.isclose(_checks.centres(emission)[:, None], _checks.centres(excitation)[None, :],
                               rtol=0, atol=1e-6 * min(emission[1], excitation[1]))
