@@ -200,9 +200,12 @@ public:
             names_columns = names_columns || names_wavelengths(headings[0]);
             named_.push_back({&line, headings});
         }
+        std::erase_if(named_, [&](const Named& named) {
+            return names_columns && !names_wavelengths(named.headings[0]);
+        });
         for (const Named& named : named_)
-            if (names_wavelengths(named.headings[0]))
-                take(named);
+            if (names_columns)
+                take(named, &named == &named_.back());
         if (!names_columns && !named_.empty())
             take_unnamed(named_.back());
         else if (!names_columns && last != nullptr)
@@ -226,7 +229,8 @@ private:
     /// letter alone may be a lamp's name. "Serial,7" is no heading.
     bool may_name_columns(const HeadLine& line, const std::vector<std::string>& headings) const {
         if (headings.size() > 1 && begins_as_number(headings[1]) &&
-            (is_number(headings[1]) || !names_wavelengths(headings[0])))
+            (is_number(headings[1]) ||
+             !(begins_with_axis_name(headings[0]) || headings[0] == "nm")))
             return false; // "nm,1-R" is one
         if (!line.is_comment)
             return true;
@@ -314,12 +318,12 @@ private:
         units_.source = UnitSource::Stated;
     }
 
-    /// A line beside another that names the columns counts where it is no title such as "A,test".
-    void take(const Named& named) {
+    /// Above the line next to the rows, "A,test" and "Path length (mm),x" are no names of columns.
+    void take(const Named& named, bool is_last) {
         const std::string& axis = named.headings[0];
         const bool is_unit_line =
             std::all_of(named.headings.begin() + 1, named.headings.end(), is_unit_cell);
-        if (axis == "A" && named_.size() > 1 && !is_unit_line && &named != &named_.back())
+        if (!is_last && !is_unit_line && !begins_with_axis_name(axis))
             return;
         if (const auto unit = stated_wavelength_unit(axis))
             tell(*named.line, *unit);
@@ -335,7 +339,14 @@ private:
 
     /// "# Frequency in THz" above rows that nothing else names.
     void take_remark(const HeadLine& line) {
-        if (const auto unit = stated_wavelength_unit(line.text))
+        const auto unit = stated_wavelength_unit(line.text);
+        const std::string text = lower_case(line.text);
+        // "Slit in mm" is of no axis.
+        const bool names_axis = begins_with_axis_name(text) ||
+                                text.find("frequency") != std::string::npos ||
+                                text.find("energy") != std::string::npos ||
+                                text.find("wavelength") != std::string::npos;
+        if (unit && (names_axis || text.find_first_of(blanks) == std::string::npos))
             tell(line, *unit);
     }
 

@@ -118,11 +118,6 @@ std::vector<std::string_view> words_of(std::string_view text) {
     return words;
 }
 
-bool begins_with_axis_name(const std::vector<std::string_view>& words) {
-    return !words.empty() && std::find(axis_names.begin(), axis_names.end(),
-                                       lower_case(words.front())) != axis_names.end();
-}
-
 bool is_inverse(std::string_view word) {
     const std::string small = lower_case(word);
     return small == "inverse" || small == "reciprocal";
@@ -208,8 +203,14 @@ std::optional<WavelengthUnit> stated_wavelength_unit(std::string_view heading) {
     return std::nullopt;
 }
 
+bool begins_with_axis_name(std::string_view heading) {
+    const auto words = words_of(heading);
+    return !words.empty() && std::find(axis_names.begin(), axis_names.end(),
+                                       lower_case(words.front())) != axis_names.end();
+}
+
 bool names_wavelengths(std::string_view heading) {
-    return stated_wavelength_unit(heading) || begins_with_axis_name(words_of(heading));
+    return stated_wavelength_unit(heading) || begins_with_axis_name(heading);
 }
 
 std::string stated_other_axis(std::string_view heading) {

@@ -22,6 +22,8 @@ struct WavelengthUnit {
 /// numbers in them. A letter that may be a name (A, m, pm) is a unit where it is the whole heading,
 /// in brackets, or behind a stroke, an underscore or "in".
 std::optional<WavelengthUnit> stated_wavelength_unit(std::string_view heading);
+/// True for a heading whose first word is "wavelength", "lambda", "wavenumber" and so on.
+bool begins_with_axis_name(std::string_view heading);
 /// True for the heading of a spectral axis: it states a unit or begins with "wavelength", "lambda".
 bool names_wavelengths(std::string_view heading);
 /// The word of a heading that is an axis of another kind ("Pixel", "Angle (deg)"), or empty, as for

@@ -134,7 +134,9 @@ TEST_F(SpectrumTables, TitlesNameNoUnits) {
          {"A paint sample\nWavelength R", "A,test\nWavelength,R", "Lambda A,B",
           "PM log\nWavelength R", "Time: 10:30\nnm,R", "Time,10:30\nnm,R",
           "Energy saving lamp\nnm,R", "Low energy lamp, type 3\nnm,R", "Second sample,white\nnm,R",
-          "Energy saving lamp,x", "Power factor: 0.95\nnm,R", "## author=me\nnm,value"})
+          "Energy saving lamp,x", "Path length (mm),10 mm\nnm,R",
+          "Slit (um): 50\nWavelength (nm),R", "Path length (mm),x\nWavelength,R", "# Slit in mm",
+          "Power factor: 0.95\nnm,R", "## author=me\nnm,value"})
         for (const char* separator : {",", "\t"})
             EXPECT_EQ(read(std::string(head) + "\n400" + separator + "0.1\n600" + separator +
                            "0.3\n2500" + separator + "0.3\n")(500),
