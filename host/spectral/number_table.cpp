@@ -34,6 +34,15 @@ bool is_nearly_number(std::string_view text) {
     return is_number(text);
 }
 
+/// True where a line ends within a quoted cell; the mark in "5\" tile" opens none.
+bool is_cell_open(std::string_view line) {
+    if (std::count(line.begin(), line.end(), '"') % 2 == 0)
+        return false;
+    const std::string_view before = trimmed(line.substr(0, line.rfind('"')));
+    return before.empty() || std::string_view(",;").find(before.back()) != std::string_view::npos ||
+           line[line.rfind('"') - 1] == '\t';
+}
+
 /// Cells without the empty ones that spreadsheets fill rows up with.
 std::vector<TextToken> without_padding(std::vector<TextToken> cells, std::size_t count) {
     while (cells.size() > count && cells.back().text.empty())
@@ -129,10 +138,7 @@ private:
                               "`reradiant fit` reads it");
         HeadLine heading{std::string(trimmed(line)), reader_.line_number()};
         // A quoted cell may hold line breaks.
-        const auto is_open = [&] {
-            return std::count(heading.text.begin(), heading.text.end(), '"') % 2 != 0;
-        };
-        for (std::string_view next; is_open() && reader_.next_line(next);)
+        for (std::string_view next; is_cell_open(heading.text) && reader_.next_line(next);)
             heading.text.append(" ").append(trimmed(next));
         head_.push_back(std::move(heading));
     }

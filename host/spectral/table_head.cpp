@@ -165,8 +165,20 @@ std::vector<std::string> headings_of(std::string_view line, std::string_view fir
             return pieces;
     std::string text(line);
     if (text.starts_with('"') && text.find_first_of('"', 1) == text.size() - 1)
-        return {text.substr(1, text.size() - 2)};
+        return headings_of(text.substr(1, text.size() - 2), first_row, column_count);
     return columns_of_words(line, column_count);
+}
+
+/// True for a remark such as "values in percent", where a word for the values stands beside the
+/// unit: "humidity in %" is of something else.
+bool says_values_are_percent(std::string_view remark) {
+    const std::string text = lower_case(remark);
+    for (const char* values : {"values", "value", "reflectance", "transmittance", "data"})
+        for (const char* link : {" in ", " are ", " are in ", ": ", " (", " [", " (in "})
+            for (const char* percent : {"percent", "%", "per cent"})
+                if (text.find(std::string(values) + link + percent) != std::string::npos)
+                    return true;
+    return false;
 }
 
 /// True for a cell that is a unit and nothing else, as in a line of units below the names.
@@ -193,6 +205,8 @@ public:
         for (const HeadLine& line : head_) {
             if (read_key_value(line))
                 continue;
+            if (says_values_are_percent(line.text))
+                std::fill(units_.divisors.begin() + 1, units_.divisors.end(), 100.0);
             last = &line;
             const auto headings = headings_of(line.text, first_row_, column_count_);
             if (headings.size() < column_count_ || !may_name_columns(line, headings))
@@ -279,7 +293,7 @@ private:
         require_quantity(line, text);
         if (states_percent(text)) {
             std::fill(units_.divisors.begin() + 1, units_.divisors.end(), 100.0);
-        } else if (text == "1" || lower_case(text) == "fraction") {
+        } else if (text == "1" || text.starts_with("1 ") || lower_case(text) == "fraction") {
             fraction_ = &line;
         } else if (begins_as_number(text) || lower_case(text).starts_with("x ")) {
             fail(line, fmt::format("the unit '{}' is not known here", text),

@@ -117,13 +117,16 @@ TEST_F(SpectrumTables, PercentIsFoundWhereverTheHeadStatesIt) {
           "Wavelength,Reflectance\nnm,%\n400,40\n500,60\n",
           "X Units: Wavelength (nm)\nY Units: Reflectance (%)\n\n400 40\n500 60\n",
           "# unit: percent\nnm,value\n400,40\n500,60\n", "nm,value\n# Unit = %\n400,40\n500,60\n",
+          "\"Wavelength (nm)\tR (%)\"\n400\t40\n500\t60\n", "# Reflectance (%)\n400 40\n500 60\n",
+          "# values in percent\nnm,R\n400,40\n500,60\n", "tile of 5\"\nnm,%R\n400,40\n500,60\n",
           "nm,per cent\n400,40\n500,60\n", "nm,R (0-100%)\n400,40\n500,60\n"})
         EXPECT_NEAR(read(text)(450), 0.5, 1e-12) << text;
     EXPECT_NEAR(read_spectrum(write("s.spd", "# unit: percent\n400 40\n500 60\n"))(450), 0.5,
                 1e-12);
     // A sign behind a digit belongs to a sample's name.
     for (const char* heading : {"nm,Grey 50%", "nm,R at 50% RH", "nm,Spectralon SRS-50 (50 %)",
-                                "nm,R (0-1; not %)", "# unit: 1\nnm,R", "# at 20 % RH\nnm,R"})
+                                "nm,R (0-1; not %)", "# unit: 1\nnm,R", "# humidity in %\nnm,R",
+                                "# unit: 1 (arbitrary)\nnm,R", "# at 20 % RH\nnm,R"})
         EXPECT_EQ(read(std::string(heading) + "\n400,0.5\n500,0.5\n")(450), 0.5) << heading;
     EXPECT_EQ(place("# unit: 1\nnm,%R\n400,40\n", "fractions"), (std::pair{1, 1}));
     EXPECT_EQ(place("nm,R\n400,40\n# unit: percent\n500,60\n", "behind the values").first, 3);
