@@ -1,5 +1,6 @@
 #include "host/spectral/number_table.h"
 
+#include "host/spectral/head_key.h"
 #include "host/spectral/table_head.h"
 #include "host/spectral/text_reader.h"
 #include "host/spectral/wavelength_unit.h"

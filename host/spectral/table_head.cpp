@@ -1,6 +1,7 @@
 #include "host/spectral/table_head.h"
 
 #include "host/error.h"
+#include "host/spectral/head_key.h"
 #include "host/spectral/text_reader.h"
 
 #include <fmt/format.h>
@@ -23,6 +24,11 @@ std::string lower_case(std::string_view text) {
     return lower;
 }
 
+template <std::size_t N>
+bool is_one_of(const std::array<std::string_view, N>& known, std::string_view word) {
+    return std::find(known.begin(), known.end(), word) != known.end();
+}
+
 /// Pieces between any of the separators that no quotation marks enclose.
 std::vector<std::string> pieces_of(std::string_view text, std::string_view separators) {
     std::vector<std::string> pieces(1);
@@ -43,77 +49,6 @@ std::vector<std::string> words_between_blanks(std::string_view text) {
     auto words = pieces_of(text, blanks);
     std::erase(words, "");
     return words;
-}
-
-/// A line "key: value", "key = value", "key,value", or "key 0.01".
-struct KeyValue {
-    enum class Kind { None, XUnits, YUnits, Units, Factor } kind = Kind::None;
-    std::string value;
-};
-
-template <std::size_t N>
-bool is_one_of(const std::array<std::string_view, N>& known, std::string_view word) {
-    return std::find(known.begin(), known.end(), word) != known.end();
-}
-
-KeyValue::Kind kind_of_key(std::string_view key) {
-    constexpr std::array<std::string_view, 5> units{"unit", "units", "xunits", "yunits", "einheit"};
-    constexpr std::array<std::string_view, 6> x_axes{"x",      "wavelength", "wavelengths",
-                                                     "lambda", "abscissa",   "xunits"};
-    constexpr std::array<std::string_view, 13> y_axes{
-        "y",         "value", "values",      "ordinate", "reflectance", "transmittance", "yunits",
-        "intensity", "data",  "measurement", "spectral", "photometric", "reflectivity"};
-    constexpr std::array<std::string_view, 13> factors{
-        "factor",  "scale",   "scaling", "multiplier", "yfactor",      "xfactor", "scalefactor",
-        "divisor", "divided", "scaled",  "multiplied", "scale_factor", "multiply"};
-    constexpr std::array<std::string_view, 16> companions{
-        "x",           "y",          "by",        "value",        "values",      "data",
-        "the",         "conversion", "ordinate",  "correction",   "calibration", "axis",
-        "reflectance", "spectral",   "intensity", "transmittance"};
-    std::vector<std::string> words = words_between_blanks(lower_case(key));
-    for (std::string& word : words)
-        while (!word.empty() &&
-               std::string_view("()_-").find(word.back()) != std::string_view::npos)
-            word.pop_back();
-    if (words.empty())
-        return KeyValue::Kind::None;
-    const auto is_unit = [&](const std::string& word) { return is_one_of(units, word); };
-    if (words.size() <= 3 && std::any_of(words.begin(), words.end(), is_unit)) {
-        if (words.size() == 1 && !words[0].starts_with('x') && !words[0].starts_with('y'))
-            return KeyValue::Kind::Units;
-        return is_one_of(x_axes, words[0])   ? KeyValue::Kind::XUnits
-               : is_one_of(y_axes, words[0]) ? KeyValue::Kind::YUnits
-                                             : KeyValue::Kind::None;
-    }
-    bool has_factor = false;
-    for (const std::string& word : words) {
-        has_factor = has_factor || is_one_of(factors, word);
-        if (!is_one_of(factors, word) && !is_one_of(companions, word))
-            return KeyValue::Kind::None;
-    }
-    return has_factor ? KeyValue::Kind::Factor : KeyValue::Kind::None;
-}
-
-KeyValue key_value_of(std::string_view line) {
-    std::string text(line);
-    std::erase(text, '"');
-    const std::string_view whole = trimmed(text);
-    auto end = whole.find_first_of(":=,;\t");
-    if (end == std::string_view::npos)
-        end = whole.find_last_of(' '); // "Scale factor 0.01"
-    if (end == std::string_view::npos)
-        return {};
-    std::string_view value = whole.substr(end);
-    while (!value.empty() &&
-           std::string_view(":=,; \t").find(value.front()) != std::string_view::npos)
-        value.remove_prefix(1);
-    while (!value.empty() && std::string_view(",; \t").find(value.back()) != std::string_view::npos)
-        value.remove_suffix(1);
-    KeyValue found{kind_of_key(whole.substr(0, end)), std::string(value)};
-    const bool is_number_or_log = begins_as_number(value) || lower_case(value).starts_with("log");
-    if (value.empty() || (found.kind == KeyValue::Kind::Factor && !is_number_or_log))
-        found.kind = KeyValue::Kind::None;
-    return found;
 }
 
 /// Joins the words of a heading without separators to columns: a unit in brackets, behind a stroke
@@ -167,18 +102,6 @@ std::vector<std::string> headings_of(std::string_view line, std::string_view fir
     if (text.starts_with('"') && text.find_first_of('"', 1) == text.size() - 1)
         return headings_of(text.substr(1, text.size() - 2), first_row, column_count);
     return columns_of_words(line, column_count);
-}
-
-/// True for a remark such as "values in percent", where a word for the values stands beside the
-/// unit: "humidity in %" is of something else.
-bool says_values_are_percent(std::string_view remark) {
-    const std::string text = lower_case(remark);
-    for (const char* values : {"values", "value", "reflectance", "transmittance", "data"})
-        for (const char* link : {" in ", " are ", " are in ", ": ", " (", " [", " (in "})
-            for (const char* percent : {"percent", "%", "per cent"})
-                if (text.find(std::string(values) + link + percent) != std::string::npos)
-                    return true;
-    return false;
 }
 
 /// True for a cell that is a unit and nothing else, as in a line of units below the names.
@@ -401,10 +324,6 @@ private:
 ColumnUnits column_units(const std::vector<HeadLine>& head, std::string_view first_row,
                          std::size_t column_count, const std::string& file) {
     return HeadReader(head, first_row, column_count, file).read();
-}
-
-bool tells_units(std::string_view line) {
-    return key_value_of(line).kind != KeyValue::Kind::None;
 }
 
 } // namespace reradiant

@@ -30,7 +30,4 @@ struct ColumnUnits {
 ColumnUnits column_units(const std::vector<HeadLine>& head, std::string_view first_row,
                          std::size_t column_count, const std::string& file);
 
-/// True for a line "unit: percent", "Scale factor 0.01" that tells how values are to be read.
-bool tells_units(std::string_view line);
-
 } // namespace reradiant
