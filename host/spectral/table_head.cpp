@@ -216,7 +216,8 @@ private:
         require_quantity(line, text);
         if (states_percent(text)) {
             std::fill(units_.divisors.begin() + 1, units_.divisors.end(), 100.0);
-        } else if (text == "1" || text.starts_with("1 ") || lower_case(text) == "fraction") {
+        } else if (text == "1" || text.starts_with("1 ") || text.starts_with("1;") ||
+                   text.starts_with("1,") || lower_case(text) == "fraction") {
             fraction_ = &line;
         } else if (begins_as_number(text) || lower_case(text).starts_with("x ")) {
             fail(line, fmt::format("the unit '{}' is not known here", text),

@@ -124,9 +124,10 @@ TEST_F(SpectrumTables, PercentIsFoundWhereverTheHeadStatesIt) {
     EXPECT_NEAR(read_spectrum(write("s.spd", "# unit: percent\n400 40\n500 60\n"))(450), 0.5,
                 1e-12);
     // A sign behind a digit belongs to a sample's name.
-    for (const char* heading : {"nm,Grey 50%", "nm,R at 50% RH", "nm,Spectralon SRS-50 (50 %)",
-                                "nm,R (0-1; not %)", "# unit: 1\nnm,R", "# humidity in %\nnm,R",
-                                "# unit: 1 (arbitrary)\nnm,R", "# at 20 % RH\nnm,R"})
+    for (const char* heading :
+         {"nm,Grey 50%", "nm,R at 50% RH", "nm,Spectralon SRS-50 (50 %)", "nm,R (0-1; not %)",
+          "# unit: 1\nnm,R", "# humidity in %\nnm,R", "# unit: 1 (arbitrary)\nnm,R",
+          "# unit: 1; by 10 nm\nnm,R", "# at 20 % RH\nnm,R"})
         EXPECT_EQ(read(std::string(heading) + "\n400,0.5\n500,0.5\n")(450), 0.5) << heading;
     EXPECT_EQ(place("# unit: 1\nnm,%R\n400,40\n", "fractions"), (std::pair{1, 1}));
     EXPECT_EQ(place("nm,R\n400,40\n# unit: percent\n500,60\n", "behind the values").first, 3);
