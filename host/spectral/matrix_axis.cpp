@@ -31,7 +31,9 @@ double half_last_digit(std::string_view number) {
     const double decimals =
         point == std::string_view::npos ? 0.0 : static_cast<double>(exponent_at - point - 1);
     int exponent = 0; // as it stays where there is none
-    const auto digits = number.substr(std::min(exponent_at + 1, number.size()));
+    auto digits = number.substr(std::min(exponent_at + 1, number.size()));
+    if (digits.starts_with('+')) // from_chars takes none
+        digits.remove_prefix(1);
     std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
     return 0.5 * std::pow(10.0, exponent - decimals);
 }

@@ -1,5 +1,7 @@
 #include "host/spectral/number_table.h"
 
+#include "host/spectral/head_key.h"
+#include "host/spectral/table_head.h"
 #include "host/spectral/text_reader.h"
 #include "host/spectral/wavelength_unit.h"
 
@@ -22,44 +24,60 @@ std::vector<TextToken> cells_of(const TextReader& reader, std::string_view line)
                                                               : reader.split_cells(line);
 }
 
-/// Headings of a line, where a unit in brackets or behind a stroke belongs to the word before it.
-std::vector<std::string> headings_of(const TextReader& reader, std::string_view line) {
-    if (line.find_first_of(",;\t") != std::string_view::npos) {
-        std::vector<std::string> headings;
-        for (const TextToken& cell : reader.split_cells(line))
-            headings.emplace_back(cell.text);
-        return headings;
-    }
-    std::vector<std::string> headings;
-    bool continues = false;
-    for (const TextToken& word : reader.split_at_blanks(line)) {
-        const bool joins = continues || word.text.find_first_of("([/") == 0;
-        continues = word.text == "/";
-        if (joins && !headings.empty())
-            headings.back().append(" ").append(word.text);
-        else
-            headings.emplace_back(word.text);
-    }
-    return headings;
-}
-
 bool holds_digit(std::string_view text) {
     return text.find_first_of("0123456789") != std::string_view::npos;
+}
+
+/// A number, perhaps with a percent sign or a bracket behind it.
+bool is_nearly_number(std::string_view text) {
+    while (!text.empty() && std::string_view("%)] ").find(text.back()) != std::string_view::npos)
+        text.remove_suffix(1);
+    return is_number(text);
+}
+
+/// True where a line ends within a quoted cell; the mark in "5\" tile" opens none.
+bool is_cell_open(std::string_view line) {
+    if (std::count(line.begin(), line.end(), '"') % 2 == 0)
+        return false;
+    const std::string_view before = trimmed(line.substr(0, line.rfind('"')));
+    return before.empty() || std::string_view(",;").find(before.back()) != std::string_view::npos ||
+           line[line.rfind('"') - 1] == '\t';
+}
+
+/// Cells without the empty ones that spreadsheets fill rows up with.
+std::vector<TextToken> without_padding(std::vector<TextToken> cells, std::size_t count) {
+    while (cells.size() > count && cells.back().text.empty())
+        cells.pop_back();
+    return cells;
+}
+
+/// "x400,0.5", "l00,50%", ",0.9" are rows that went wrong rather than headings. pandas heads a
+/// series by ",0".
+bool looks_like_row(const std::vector<TextToken>& padded, std::size_t count) {
+    const auto cells = without_padding(padded, count);
+    const std::string_view first = cells[0].text;
+    if (is_number(first))
+        return true;
+    if (cells.size() < 2 || !is_nearly_number(cells[1].text))
+        return false;
+    if (cells.size() != count)
+        return first.size() > 1 && is_number(first.substr(1));
+    return first.empty() ? cells[1].text != "0" : holds_digit(first);
 }
 
 /// Reads the rows of a table whose columns have units.
 class RowReader {
 public:
     RowReader(const std::filesystem::path& file, int column_count)
-        : reader_(file), divisors_(static_cast<std::size_t>(column_count), 1.0) {
+        : reader_(file), column_count_(static_cast<std::size_t>(column_count)) {
         table_.file = reader_.name();
-        table_.columns.resize(divisors_.size());
+        table_.columns.resize(column_count_);
     }
 
     UnsortedTable read() {
         for (std::string_view line; reader_.next_line(line);) {
             const std::string_view text = trimmed(line);
-            if (text.starts_with('#') || text.starts_with(';'))
+            if (is_comment(line))
                 read_comment(text.substr(1));
             else if (const auto cells = cells_of(reader_, line); !is_empty(cells))
                 read_cells(line, cells);
@@ -76,83 +94,78 @@ private:
                            [](const TextToken& cell) { return cell.text.empty(); });
     }
 
-    void read_cells(std::string_view line, const std::vector<TextToken>& cells) {
-        const std::string_view first = cells.front().text;
-        // "1/cm" is the one heading that begins with a digit.
-        const bool is_heading = table_.places.empty() && (first.empty() || !is_gap(first)) &&
-                                (!begins_as_number(first) || first == "1/cm");
-        is_heading ? read_heading(line, cells) : read_row(cells);
+    /// A semicolon marks a comment unless it stands for an empty cell: ";0.9".
+    bool is_comment(std::string_view line) const {
+        const std::string_view text = trimmed(line);
+        if (text.starts_with('#'))
+            return true;
+        if (!text.starts_with(';'))
+            return false;
+        const auto cells = reader_.split_cells(line);
+        return !is_empty(cells) && !(cells.size() == column_count_ && is_number(cells[1].text));
     }
 
-    /// "# nm value", as numpy writes headings and this program .spd files.
+    void read_cells(std::string_view line, const std::vector<TextToken>& cells) {
+        const std::string_view first = cells.front().text;
+        // "1/cm" and "1/um" are the headings that begin with a digit.
+        const bool is_heading = table_.places.empty() && (first.empty() || !is_gap(first)) &&
+                                (!begins_as_number(first) || first.starts_with("1/")) &&
+                                !looks_like_row(cells, column_count_);
+        if (is_heading || (table_.places.empty() && tells_units(line)))
+            return read_heading(line, cells);
+        if (table_.places.empty())
+            units_ = column_units(head_, line, column_count_, reader_.name());
+        table_.unit = units_.source;
+        read_row(cells);
+    }
+
     void read_comment(std::string_view text) {
-        const auto headings = headings_of(reader_, text);
-        if (table_.places.empty() && headings.size() == divisors_.size() && headings[0] != "A" &&
-            headings[0] != "m" && names_wavelengths(headings[0]))
-            take_units(headings);
+        const auto from = text.find_first_not_of("#; \t");
+        if (from == std::string_view::npos)
+            return;
+        text.remove_prefix(from);
+        if (table_.places.empty())
+            head_.push_back({std::string(text), reader_.line_number(), true});
+        else if (tells_units(text))
+            throw_input_error(reader_.position(reader_.line_number(), 1),
+                              "the line tells units behind the values they are for",
+                              "move it above the values");
     }
 
     void read_heading(std::string_view line, const std::vector<TextToken>& cells) {
-        const auto headings = headings_of(reader_, line);
         if (cells.front().text == "theta_i_deg")
             throw_input_error(reader_.position(cells.front()),
                               "this is a measurement of `measure`, not a spectrum",
                               "`reradiant fit` reads it");
-        if (cells.size() > 1 && is_number(cells.back().text)) {
-            if (line.find("actor") != std::string_view::npos ||
-                line.find("FACTOR") != std::string_view::npos)
-                throw_input_error(reader_.position(cells.front()),
-                                  "the line states a factor that is not applied here",
-                                  "multiply the values by it and leave the line out");
-            // "x400,0.5" is a row that went wrong rather than a heading.
-            if (cells.size() == divisors_.size() && holds_digit(cells.front().text))
-                reader_.number(cells.front());
-        }
-        if (headings.size() >= divisors_.size())
-            take_units(headings);
+        HeadLine heading{std::string(trimmed(line)), reader_.line_number()};
+        // A quoted cell may hold line breaks.
+        for (std::string_view next; is_cell_open(heading.text) && reader_.next_line(next);)
+            heading.text.append(" ").append(trimmed(next));
+        head_.push_back(std::move(heading));
     }
 
-    void take_units(const std::vector<std::string>& headings) {
-        if (const auto unit = stated_wavelength_unit(headings[0])) {
-            unit_ = *unit;
-            table_.unit = UnitSource::Stated;
-        } else if (const auto axis = stated_other_axis(headings[0]); !axis.empty()) {
-            throw_input_error(reader_.position(reader_.line_number(), 1),
-                              fmt::format("'{}' is not a wavelength", axis),
-                              "the first column holds wavelengths, in nm unless its heading names "
-                              "another unit");
-        }
-        // Titles stand above and below the line that names the columns.
-        const bool names_columns = names_wavelengths(headings[0]);
-        for (std::size_t column = 1; column < divisors_.size(); ++column)
-            if (states_percent(headings[column]) && !begins_as_number(headings[column]))
-                divisors_[column] = 100.0;
-            else if (names_columns)
-                divisors_[column] = 1.0;
-    }
-
-    void read_row(std::vector<TextToken> cells) {
-        while (cells.size() > divisors_.size() && cells.back().text.empty())
-            cells.pop_back(); // spreadsheets fill rows up with empty cells
-        if (cells.size() != divisors_.size())
+    void read_row(const std::vector<TextToken>& padded) {
+        const auto cells = without_padding(padded, column_count_);
+        if (cells.size() != column_count_)
             throw_input_error(reader_.position(cells[0]),
                               fmt::format("{} values in this line", cells.size()),
                               fmt::format("{} are needed: a wavelength and its value{}",
-                                          divisors_.size(), divisors_.size() > 2 ? "s" : ""));
+                                          column_count_, column_count_ > 2 ? "s" : ""));
         table_.columns[0].push_back(wavelength_nm(cells[0]));
         table_.places.push_back({cells[0].line, cells[0].column});
         for (std::size_t column = 1; column < cells.size(); ++column)
-            table_.columns[column].push_back(value(cells[column], divisors_[column]));
+            table_.columns[column].push_back(value(cells[column], units_.divisors[column]));
     }
 
     double wavelength_nm(const TextToken& cell) const {
-        if (cell.text.ends_with("nm") || (unit_.factor == 1.0 && !unit_.reciprocal))
+        const WavelengthUnit& unit = units_.wavelength;
+        if (cell.text.ends_with("nm") || (unit.factor == 1.0 && !unit.reciprocal))
             return reader_.wavelength_nm(cell);
         const double given = reader_.number(cell);
-        const double nm = given > 0.0 ? unit_.to_nm(given) : 0.0;
+        const double nm = given > 0.0 ? unit.to_nm(given) : 0.0;
         if (!(nm > 0.0 && nm <= 1e6))
             throw_input_error(reader_.position(cell),
-                              fmt::format("{} {} is not a wavelength of light", given, unit_.name),
+                              fmt::format("{} {} is not a wavelength of light", given, unit.name),
                               "check the unit that the heading states");
         return nm;
     }
@@ -168,8 +181,9 @@ private:
 
     TextReader reader_;
     UnsortedTable table_;
-    WavelengthUnit unit_;
-    std::vector<double> divisors_; ///< per column: 100 for percent
+    std::size_t column_count_;
+    std::vector<HeadLine> head_; ///< what stands before the first row
+    ColumnUnits units_;
 };
 
 } // namespace

@@ -11,19 +11,27 @@ namespace reradiant {
 
 namespace {
 
-/// Wavelength of a field such as SPECTRAL_NM400, SPECTRAL_NM_400, SPECTRAL_400, SPEC_400, NM400,
-/// NM_400 and R_400; 0 for any other field.
-double field_wavelength_nm(std::string_view field) {
-    std::string name(field);
-    std::transform(name.begin(), name.end(), name.begin(),
+std::string upper_case(std::string_view text) {
+    std::string upper(text);
+    std::transform(upper.begin(), upper.end(), upper.begin(),
                    [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return upper;
+}
+
+/// Wavelength of a field such as SPECTRAL_NM400, SPECTRAL_NM_400, SPECTRAL_400, SPEC_400, NM400,
+/// NM_400 and R_400, perhaps with NM behind it; 0 for any other field. Input Error for such a field
+/// whose number is none.
+double field_wavelength_nm(const std::string& name, const SourcePosition& at) {
     for (const char* prefix :
          {"SPECTRAL_NM_", "SPECTRAL_NM", "SPECTRAL_", "SPEC_", "NM_", "NM", "R_"}) {
         if (!name.starts_with(prefix))
             continue;
-        const std::string rest = name.substr(std::string_view(prefix).size());
-        if (begins_as_number(rest) && is_number(rest))
-            return number_at(rest, {});
+        std::string rest = name.substr(std::string_view(prefix).size());
+        if (!begins_as_number(rest))
+            continue;
+        if (rest.ends_with("NM"))
+            rest.resize(rest.size() - 2);
+        return wavelength_nm_at(rest, at);
     }
     return 0.0;
 }
@@ -34,8 +42,8 @@ struct Field {
     double nm = 0.0; ///< of Kind::Value
 };
 
-Field field_of(std::string_view name) {
-    if (const double nm = field_wavelength_nm(name); nm > 0.0)
+Field field_of(const std::string& name, const SourcePosition& at) {
+    if (const double nm = field_wavelength_nm(name, at); nm > 0.0)
         return {Field::Kind::Value, nm};
     if (name == "SPECTRAL_NM")
         return {Field::Kind::Wavelength};
@@ -59,13 +67,13 @@ public:
             const auto tokens = tokens_of(line);
             if (tokens.empty())
                 continue;
-            const std::string_view key = tokens[0].text;
+            const std::string key = upper_case(tokens[0].text);
             if (key == "BEGIN_DATA_FORMAT")
                 read_fields();
             else if (key == "BEGIN_DATA")
                 read_data(tokens[0]);
             else if (key == "SPECTRAL_NORM" && tokens.size() > 1)
-                norm_ = positive(tokens[1]);
+                read_norm(tokens[1]);
             else if (key == "NUMBER_OF_SETS" && tokens.size() > 1)
                 sets_ = reader_.number(tokens[1]);
         }
@@ -88,18 +96,22 @@ private:
         return reader_.split_at_blanks(line);
     }
 
-    double positive(const TextToken& token) const {
+    void read_norm(const TextToken& token) {
+        if (!values_.empty())
+            fail(token, "SPECTRAL_NORM stands behind the data", "move it above BEGIN_DATA");
         const double value = reader_.number(token);
         if (!(value >= 1e-6 && value <= 1e6))
             fail(token, fmt::format("a norm of {}", value), "it is 1, or 100 for percent");
-        return value;
+        if (norm_ && *norm_ != value)
+            fail(token, "SPECTRAL_NORM is given twice", "give it once");
+        norm_ = value;
     }
 
     /// Appends the tokens up to the line that ends the section.
     void read_section(std::vector<TextToken>& tokens, std::string_view end) {
         for (std::string_view line; reader_.next_line(line);) {
             const auto more = tokens_of(line);
-            if (!more.empty() && more[0].text == end)
+            if (!more.empty() && upper_case(more[0].text) == end)
                 return;
             tokens.insert(tokens.end(), more.begin(), more.end());
         }
@@ -142,7 +154,7 @@ private:
     void assign() {
         double nm = 0.0; // of the SPECTRAL_NM whose value comes next
         for (std::size_t k = 0; k < fields_.size(); ++k) {
-            const Field field = field_of(fields_[k].text);
+            const Field field = field_of(upper_case(fields_[k].text), reader_.position(fields_[k]));
             switch (field.kind) {
             case Field::Kind::Other:
                 break;

@@ -1,3 +1,4 @@
+#include "host/spectral/matrix_formats.h"
 #include "host/spectral/spectrum_formats.h"
 #include "host/spectral/text_reader.h"
 #include "host/spectral/wavelength_unit.h"
@@ -5,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -26,6 +28,16 @@ std::string plain_label(std::string_view label) {
         if (std::string_view(" -/_\t").find(c) == std::string_view::npos)
             plain += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     return plain;
+}
+
+/// Between the words of a unit; a minus is none of them, for it may take from 1.
+constexpr std::string_view between_words = " \t_()[],";
+
+std::string upper_case(std::string_view text) {
+    std::string upper(text);
+    std::transform(upper.begin(), upper.end(), upper.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return upper;
 }
 
 std::string_view without_remark(std::string_view line) {
@@ -94,8 +106,9 @@ private:
     }
 
     void keep(const std::string& label, const Record& record) {
-        for (const char* needed : {"XUNITS", "YUNITS", "XFACTOR", "YFACTOR", "FIRSTX", "LASTX",
-                                   "NPOINTS", "DELTAX", "FIRSTY", "TITLE", "BLOCKS"})
+        for (const char* needed :
+             {"XUNITS", "YUNITS", "XFACTOR", "YFACTOR", "FIRSTX", "LASTX", "NPOINTS", "DELTAX",
+              "FIRSTY", "MAXY", "MINY", "TITLE", "BLOCKS"})
             if (label == needed && !records_.emplace(label, record).second)
                 fail(record.label, fmt::format("##{} is given twice", label),
                      "give a file of one spectrum");
@@ -128,17 +141,49 @@ private:
         return *unit;
     }
 
-    /// 1, or 100 for percent.
+    /// 1, or 100 for percent. Words that are not known may make another quantity of it, as those
+    /// of "1-TRANSMITTANCE" and "SQRT REFLECTANCE" do.
     double y_divisor() const {
         const Record& record = required("YUNITS");
-        const std::string units = plain_label(record.value.text);
-        const auto holds = [&](const char* word) { return units.find(word) != std::string::npos; };
-        const bool is_fraction =
-            holds("REFLECTANCE") || holds("TRANSMITTANCE") || holds("TRANSMISSION");
-        if (!is_fraction || holds("LOG") || holds("ABSORB") || holds("1R"))
-            fail(record.value, fmt::format("YUNITS are {}", record.value.text),
-                 "REFLECTANCE and TRANSMITTANCE are read; convert the values");
+        constexpr std::array<std::string_view, 20> known{"REFLECTANCE",
+                                                         "TRANSMITTANCE",
+                                                         "TRANSMISSION",
+                                                         "PERCENT",
+                                                         "PER",
+                                                         "CENT",
+                                                         "PCT",
+                                                         "%",
+                                                         "TOTAL",
+                                                         "DIFFUSE",
+                                                         "SPECTRAL",
+                                                         "HEMISPHERICAL",
+                                                         "DIRECTIONAL",
+                                                         "SPECULAR",
+                                                         "RELATIVE",
+                                                         "FACTOR",
+                                                         "TRANSMITTANCES",
+                                                         "REFLECTANCES",
+                                                         "FRACTION",
+                                                         "ABSOLUTE"};
+        bool is_fraction = false;
+        std::string words = upper_case(record.value.text);
+        for (std::size_t from = words.find_first_not_of(between_words);
+             from != std::string::npos;) {
+            const auto to = std::min(words.find_first_of(between_words, from), words.size());
+            const std::string word = words.substr(from, to - from);
+            if (std::find(known.begin(), known.end(), word) == known.end())
+                refuse_y_units(record);
+            is_fraction = is_fraction || word.starts_with("REFLECT") || word.starts_with("TRANSM");
+            from = words.find_first_not_of(between_words, to);
+        }
+        if (!is_fraction)
+            refuse_y_units(record);
         return states_percent(record.value.text) ? 100.0 : 1.0;
+    }
+
+    [[noreturn]] void refuse_y_units(const Record& record) const {
+        fail(record.value, fmt::format("YUNITS are {}", record.value.text),
+             "REFLECTANCE and TRANSMITTANCE are read; convert the values");
     }
 
     void read_data(const Record& record) {
@@ -156,7 +201,7 @@ private:
         else
             fail(record.value, fmt::format("the form '{}' is not read", record.value.text),
                  "(X++(Y..Y)) and (XY..XY) are");
-        require_first_value(record);
+        require_told_values(record);
     }
 
     /// Numbers of a line of AFFN. The compressed forms (ASDF) pack digits into letters and signs.
@@ -260,19 +305,32 @@ private:
         require_count(count);
     }
 
-    /// FIRSTY is there to tell that factors were applied rightly.
-    void require_first_value(const Record& data) const {
-        const Record* record = find("FIRSTY");
-        if (record == nullptr || table_.places.empty())
+    /// FIRSTY, MAXY and MINY are there to tell that factors were applied rightly.
+    void require_told_values(const Record& data) const {
+        const std::vector<double>& values = table_.columns[1];
+        if (values.empty())
             return;
-        const double told = reader_.number(record->value) / y_divisor_,
-                     read = table_.columns[1].front();
-        if (!(std::abs(told - read) <= 0.02 * std::max(std::abs(told), std::abs(read)) + 1e-9 +
-                                           std::abs(y_factor_ / y_divisor_)))
+        const auto [least, most] = std::minmax_element(values.begin(), values.end());
+        require_told("FIRSTY", "first", values.front(), data);
+        require_told("MAXY", "largest", *most, data);
+        require_told("MINY", "least", *least, data);
+    }
+
+    /// Values were rounded to whole YFACTORs where one is given, the label's to its last digit.
+    void require_told(const char* label, const char* which, double value,
+                      const Record& data) const {
+        const Record* record = find(label);
+        if (record == nullptr)
+            return;
+        const double told = reader_.number(record->value), read = value * y_divisor_;
+        const double step = find("YFACTOR") && y_factor_ != 1.0 ? std::abs(y_factor_) : 0.0;
+        const double rounding = std::min(half_last_digit(record->value.text), std::abs(told));
+        if (!(std::abs(told - read) <=
+              0.02 * std::max(std::abs(told), std::abs(read)) + 1e-9 + step + rounding))
             fail(record->value,
-                 fmt::format(
-                     "FIRSTY is {:.6g}, but the first value at line {} times YFACTOR is {:.6g}",
-                     told * y_divisor_, data.label.line + 1, read * y_divisor_),
+                 fmt::format("{} is {:.6g}, but the {} value of the data at line {} times YFACTOR "
+                             "is {:.6g}",
+                             label, told, which, data.label.line, read),
                  "one of the two is wrong");
     }
 

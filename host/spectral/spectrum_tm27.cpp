@@ -46,7 +46,7 @@ public:
             const SourcePosition at = position(point);
             table.columns[0].push_back(
                 wavelength_nm_at(trimmed(point.attribute("wavelength").value()), at));
-            table.columns[1].push_back(number_at(trimmed(point.child_value()), at));
+            table.columns[1].push_back(number_at(trimmed(text_of(point)), at));
             table.places.push_back({at.line, at.column});
         }
         if (table.places.empty())
@@ -66,6 +66,18 @@ private:
     /// Of the '<' before the element's name.
     SourcePosition position(const pugi::xml_node& node) const {
         return position_at(std::max<std::ptrdiff_t>(1, node.offset_debug()) - 1);
+    }
+
+    /// The whole text of an element, which comments may divide.
+    std::string text_of(const pugi::xml_node& element) const {
+        std::string text;
+        for (const pugi::xml_node& child : element.children())
+            if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata)
+                text += child.value();
+            else
+                throw_input_error(position(element), "more than a number in SpectralData",
+                                  "write <SpectralData wavelength=\"400\">0.5</SpectralData>");
+        return text;
     }
 
     pugi::xml_node only_child(const pugi::xml_node& parent, std::string_view name) const {

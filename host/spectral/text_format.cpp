@@ -25,6 +25,7 @@ constexpr std::string_view save_as_csv = "save the sheet as CSV in UTF-8";
 constexpr std::string_view save_as_utf8 = "save it as UTF-8";
 constexpr std::string_view unpack = "unpack it first";
 constexpr std::string_view give_text = "give the numbers as text";
+constexpr std::string_view save_table = "save the numbers as CSV";
 constexpr std::array signatures{
     Signature{"PK\x03\x04", "a Zip archive (.xlsx, .ods, .zip)", save_as_csv},
     Signature{"PK\x05\x06", "an empty Zip archive", save_as_csv},
@@ -44,10 +45,22 @@ constexpr std::array signatures{
               "compressed by xz", unpack},
     Signature{"7z\xbc\xaf", "a 7-Zip archive", unpack},
     Signature{"{\\rtf", "an RTF document", "save it as plain text"},
+    Signature{"%!PS", "a PostScript document", give_text},
+    Signature{"%%MatrixMarket", "a Matrix Market file", save_table},
+    Signature{"ISO-10303-21", "a STEP file", save_table},
+    Signature{"#?RADIANCE", "a Radiance image (.hdr)", give_text},
+    Signature{"#?RGBE", "a Radiance image (.hdr)", give_text},
 };
 // These begin with NUL bytes or are told from another by them, so string literals would end early.
 constexpr std::string_view utf32_marks[] = {{"\xff\xfe\0\0", 4}, {"\0\0\xfe\xff", 4}};
 constexpr std::string_view utf16_marks[] = {{"\xff\xfe", 2}, {"\xfe\xff", 2}};
+
+/// Formats that say what they are by a first line which is this and nothing else.
+constexpr std::array first_lines{
+    Signature{"ply", "a PLY mesh", save_table}, Signature{"OFF", "an OFF mesh", save_table},
+    Signature{"P1", "a PBM image", save_table}, Signature{"P2", "a PGM image", save_table},
+    Signature{"P3", "a PPM image", save_table},
+};
 
 [[noreturn]] void refuse(const std::string& name, std::string_view what, std::string_view remedy) {
     throw_input_error({name, 1, 1}, fmt::format("the file is {}, not a text of numbers", what),
@@ -60,6 +73,10 @@ void refuse_binary(const std::string& name, std::string_view bytes) {
     for (const Signature& signature : signatures)
         if (begins_with(signature.bytes))
             refuse(name, signature.name, signature.remedy);
+    const std::string_view first_line = bytes.substr(0, bytes.find_first_of("\r\n"));
+    for (const Signature& line : first_lines)
+        if (first_line == line.bytes)
+            refuse(name, line.name, line.remedy);
     if (std::any_of(std::begin(utf32_marks), std::end(utf32_marks), begins_with))
         refuse(name, "UTF-32", save_as_utf8);
     if (std::any_of(std::begin(utf16_marks), std::end(utf16_marks), begins_with))
@@ -90,6 +107,30 @@ TextFormat xml_format(std::string_view text) {
     if (head.find("<HTML") != std::string::npos || head.find("<!DOCTYPE HTML") == 0)
         return TextFormat::Html;
     return TextFormat::Xml;
+}
+
+/// True when some line is a record of JCAMP-DX: "##XUNITS=". Remarks of programs may stand before
+/// it, and "## author=me" is a comment.
+bool has_jcamp_record(std::string_view text) {
+    constexpr std::array<std::string_view, 14> labels{
+        "TITLE",    "JCAMPDX", "JCAMPCS",   "DATATYPE", "XUNITS", "YUNITS", "XYDATA",
+        "XYPOINTS", "NPOINTS", "PEAKTABLE", "NTUPLES",  "FIRSTX", "LASTX",  "YFACTOR"};
+    for (std::size_t start = 0; start < text.size();) {
+        const auto end = std::min(text.find('\n', start), text.size());
+        std::string_view line = text.substr(start, end - start);
+        start = end + 1;
+        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+        const auto equals = line.find('=');
+        if (!line.starts_with("##") || equals == std::string_view::npos)
+            continue;
+        std::string label = upper_case(line.substr(2, equals - 2));
+        std::erase_if(label, [](char c) {
+            return std::string_view(" \t-/_").find(c) != std::string_view::npos;
+        });
+        if (std::find(labels.begin(), labels.end(), label) != labels.end())
+            return true;
+    }
+    return false;
 }
 
 /// True when some line begins with the word BEGIN_DATA or BEGIN_DATA_FORMAT.
@@ -152,9 +193,6 @@ TextFormat text_format(std::string_view text) {
     if (first == std::string_view::npos)
         return TextFormat::Table;
     text.remove_prefix(first);
-    if (text.starts_with("##"))
-        if (const auto equals = text.find('='); equals < text.find('\n'))
-            return TextFormat::JcampDx;
     if (text.front() == '<')
         return xml_format(text);
     if (text.front() == '{' || text.front() == '[')
@@ -163,6 +201,8 @@ TextFormat text_format(std::string_view text) {
         return TextFormat::Bfc;
     if (text.starts_with("IESNA"))
         return TextFormat::IesPhotometry;
+    if (has_jcamp_record(text))
+        return TextFormat::JcampDx;
     if (text.starts_with("CGATS") || text.starts_with("IT8.7/") || has_cgats_data(text))
         return TextFormat::Cgats;
     return TextFormat::Table;

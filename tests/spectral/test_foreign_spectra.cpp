@@ -111,6 +111,32 @@ TEST_F(ForeignSpectra, JcampThatIsNotUnderstoodIsRefusedByName) {
     place(jcamp(""), "no ##XYDATA");
 }
 
+TEST_F(ForeignSpectra, JcampIsKnownBehindWhatProgramsWriteAboveIt) {
+    const std::string text = jcamp(ordinates("TRANSMITTANCE PER CENT"));
+    for (const char* above : {"", "$$ Exported by X\n", "# c\n", "x\n", "\n\n; c\n400,0.5\n"})
+        EXPECT_NEAR(read(above + text)(450), 0.006, 1e-12) << above;
+    EXPECT_EQ(read("## author=me\nnm,value\n400,0.5\n500,0.7\n")(450), 0.6);
+    EXPECT_EQ(read("##author=me\nnm,value\n400,0.5\n500,0.7\n")(450), 0.6);
+}
+
+TEST_F(ForeignSpectra, JcampQuantitiesAndToldValuesAreChecked) {
+    for (const char* units : {"1-TRANSMITTANCE", "KUBELKA-MUNK (REFLECTANCE)", "SQRT REFLECTANCE",
+                              "1/REFLECTANCE", "REFLECTANCE X 100"})
+        EXPECT_EQ(place(jcamp(ordinates(units)), "YUNITS are"), (std::pair{7, 11})) << units;
+    for (const char* units : {"REFLECTANCE", "TOTAL REFLECTANCE", "Reflectance Factor"})
+        EXPECT_NEAR(read(jcamp(ordinates(units, "##MAXY= 0.6\n##MINY= 0.1\n")))(450), 0.6, 1e-12)
+            << units;
+    EXPECT_EQ(place(jcamp(ordinates("REFLECTANCE", "##MAXY= 0.006\n")), "MAXY"),
+              (std::pair{14, 9}));
+    EXPECT_EQ(place(jcamp(ordinates("REFLECTANCE", "##MINY= 0.5\n")), "MINY").first, 14);
+    // No YFACTOR, and values that need one.
+    const std::string head = "##XUNITS= NANOMETERS\n##YUNITS= REFLECTANCE\n##FIRSTX= 400\n"
+                             "##LASTX= 410\n##NPOINTS= 2\n";
+    const std::string data = "##XYDATA= (X++(Y..Y))\n400 1 2\n";
+    EXPECT_EQ(place(jcamp(head + "##FIRSTY= 0.5\n" + data), "FIRSTY").first, 11);
+    EXPECT_EQ(read(jcamp(head + "##FIRSTY= 1\n" + data))(405), 1.5);
+}
+
 TEST_F(ForeignSpectra, CgatsFieldsOfOneSample) {
     for (const char* field :
          {"SPECTRAL_NM", "SPECTRAL_NM_", "SPECTRAL_", "SPEC_", "nm", "nm_", "R_"}) {
@@ -160,6 +186,39 @@ TEST_F(ForeignSpectra, Tm27) {
               5);
     EXPECT_EQ(place(tm27(data).substr(0, 260), "not valid XML").second > 0, true);
     EXPECT_EQ(place("<IESTM2714/>", "no SpectralDistribution"), (std::pair{1, 1}));
+}
+
+TEST_F(ForeignSpectra, CgatsWordsInAnyCaseAndInTheirPlace) {
+    const std::string data = "BEGIN_DATA_FORMAT\nSPECTRAL_NM400nm SPECTRAL_NM500nm\n"
+                             "END_DATA_FORMAT\nBEGIN_DATA\n10 30\nEND_DATA\n";
+    EXPECT_NEAR(read("CGATS.17\nspectral_norm 100\n" + data)(450), 0.2, 1e-12);
+    EXPECT_EQ(place("CGATS.17\n" + data + "SPECTRAL_NORM 100\n", "behind the data"),
+              (std::pair{8, 15}));
+    EXPECT_EQ(place("CGATS.17\nBEGIN_DATA_FORMAT\nSPEC_400 SPEC_5OO\nEND_DATA_FORMAT\n"
+                    "BEGIN_DATA\n1 3\nEND_DATA\n",
+                    "not a number"),
+              (std::pair{3, 10}));
+}
+
+TEST_F(ForeignSpectra, Tm27ValuesAreTheWholeTextOfAnElement) {
+    EXPECT_EQ(read(tm27("<SpectralData wavelength=\"400\">0.<!-- x -->5</SpectralData>\n"))(400),
+              0.5);
+    EXPECT_EQ(place(tm27("<SpectralData wavelength=\"400\">0.5<b/></SpectralData>\n"), "more than"),
+              (std::pair{5, 1}));
+}
+
+TEST_F(ForeignSpectra, TextsOfNumbersThatAreNoTableAreRefused) {
+    const std::pair<const char*, const char*> heads[] = {
+        {"%!PS", "PostScript"},
+        {"P3", "PPM"},
+        {"OFF", "OFF"},
+        {"ply\nformat ascii 1.0", "PLY"},
+        {"ply\r\nformat ascii 1.0", "PLY"},
+        {"ISO-10303-21;", "STEP"},
+        {"%%MatrixMarket matrix array real general", "Matrix Market"}};
+    for (const auto& [head, words] : heads)
+        EXPECT_EQ(place(std::string(head) + "\n400 0.1\n500 0.2\n", words), (std::pair{1, 1}));
+    EXPECT_EQ(read("OFF-white\nnm,R\n400,0.1\n500,0.2\n")(400), 0.1);
 }
 
 TEST_F(ForeignSpectra, WhatIsNoTextIsRefusedByWhatItIs) {

@@ -163,6 +163,13 @@ TEST_F(MatrixIo, RoundedAxesKeepTheirDiagonal) {
         write("c.csv", head + "nm,380,390\n383.33,0.1,0\n386.67,0.1,0\n390,0.1,0.4\n"
                               "393.33,0.1,0.2\n"));
     EXPECT_EQ(diagonal_row(cut, 1), 2);
+    // numpy writes the sign of every exponent.
+    const ReradiationMatrix exponents =
+        read_reradiation(write("e.csv", head + "nm,3.83333e+02,3.86667e+02,3.90000e+02\n"
+                                               "3.83333e+02,0.1,0,0\n3.86667e+02,0.1,0.2,0\n"
+                                               "3.90000e+02,0.1,0.1,0.3\n"));
+    EXPECT_NEAR(exponents.excitation.step_nm, 10.0 / 3.0, 1e-5);
+    EXPECT_EQ(diagonal_row(exponents, 2), 2);
     EXPECT_EQ(place_of_refusal("u.csv", head + "nm,380\n380.00,0.1\n383.33,0.1\n386.60,0.1\n"
                                                "390.00,0.1\n")
                   .line,

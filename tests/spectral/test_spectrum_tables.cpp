@@ -106,6 +106,92 @@ TEST_F(SpectrumTables, StatedPercentIsReadAsPercent) {
     EXPECT_EQ(read("nm,power\n400,1000\n500,70000\n")(500), 70000);
 }
 
+TEST_F(SpectrumTables, PercentIsFoundWhereverTheHeadStatesIt) {
+    for (const char* text :
+         {"Wavelength (nm) Total reflectance (%)\n400 40\n500 60\n",
+          "# Wavelength (nm) Total reflectance (%)\n400 40\n500 60\n",
+          "\"Wavelength\n(nm)\",\"Reflectance\n(%)\"\n400,40\n500,60\n",
+          "Wavelength (nm)\tR (%), SCI\n400\t40\n500\t60\n",
+          "Y Units,%R\nWavelength,Value\n400,40\n500,60\n",
+          "(nm),(%)\nWavelength,Reflectance\n400,40\n500,60\n",
+          "Wavelength,Reflectance\nnm,%\n400,40\n500,60\n",
+          "X Units: Wavelength (nm)\nY Units: Reflectance (%)\n\n400 40\n500 60\n",
+          "# unit: percent\nnm,value\n400,40\n500,60\n", "nm,value\n# Unit = %\n400,40\n500,60\n",
+          "\"Wavelength (nm)\tR (%)\"\n400\t40\n500\t60\n", "# Reflectance (%)\n400 40\n500 60\n",
+          "# values in percent\nnm,R\n400,40\n500,60\n", "tile of 5\"\nnm,%R\n400,40\n500,60\n",
+          "nm,per cent\n400,40\n500,60\n", "nm,R (0-100%)\n400,40\n500,60\n"})
+        EXPECT_NEAR(read(text)(450), 0.5, 1e-12) << text;
+    EXPECT_NEAR(read_spectrum(write("s.spd", "# unit: percent\n400 40\n500 60\n"))(450), 0.5,
+                1e-12);
+    // A sign behind a digit belongs to a sample's name.
+    for (const char* heading :
+         {"nm,Grey 50%", "nm,R at 50% RH", "nm,Spectralon SRS-50 (50 %)", "nm,R (0-1; not %)",
+          "# unit: 1\nnm,R", "# humidity in %\nnm,R", "# unit: 1 (arbitrary)\nnm,R",
+          "# unit: 1; by 10 nm\nnm,R", "# at 20 % RH\nnm,R"})
+        EXPECT_EQ(read(std::string(heading) + "\n400,0.5\n500,0.5\n")(450), 0.5) << heading;
+    EXPECT_EQ(place("# unit: 1\nnm,%R\n400,40\n", "fractions"), (std::pair{1, 1}));
+    EXPECT_EQ(place("nm,R\n400,40\n# unit: percent\n500,60\n", "behind the values").first, 3);
+}
+
+TEST_F(SpectrumTables, TitlesNameNoUnits) {
+    for (const char* head :
+         {"A paint sample\nWavelength R", "A,test\nWavelength,R", "Lambda A,B",
+          "PM log\nWavelength R", "Time: 10:30\nnm,R", "Time,10:30\nnm,R",
+          "Energy saving lamp\nnm,R", "Low energy lamp, type 3\nnm,R", "Second sample,white\nnm,R",
+          "Energy saving lamp,x", "Path length (mm),10 mm\nnm,R",
+          "Slit (um): 50\nWavelength (nm),R", "Path length (mm),x\nWavelength,R", "# Slit in mm",
+          "Power factor: 0.95\nnm,R", "## author=me\nnm,value"})
+        for (const char* separator : {",", "\t"})
+            EXPECT_EQ(read(std::string(head) + "\n400" + separator + "0.1\n600" + separator +
+                           "0.3\n2500" + separator + "0.3\n")(500),
+                      0.2)
+                << head;
+    // The axis of the light may have other names than its unit's.
+    for (const char* head : {"Optical frequency (THz)  R", "Light frequency/THz  R",
+                             "# Frequency in THz", "X Units: Frequency (THz)"})
+        EXPECT_NEAR(read(std::string(head) + "\n599.584916 0.3\n749.481145 0.1\n")(500), 0.3, 1e-9)
+            << head;
+    for (const char* head : {"inverse um,R", "1/um,R", "Wavenumber (um^-1),R"})
+        EXPECT_NEAR(read(std::string(head) + "\n2,0.3\n2.5,0.1\n")(500), 0.3, 1e-12) << head;
+    EXPECT_NEAR(read("X Units: Wavelength (micrometers)\n0.4 0.1\n0.6 0.3\n")(500), 0.2, 1e-12);
+    EXPECT_EQ(place("# wavelength unit: um\nnm,R\n400,0.1\n", "another line"), (std::pair{2, 1}));
+    EXPECT_EQ(place("Wavelength (inch),R\n400,0.1\n", "'inch'"), (std::pair{1, 1}));
+}
+
+TEST_F(SpectrumTables, WhatIsSaidAndNotReadIsRefused) {
+    for (const char* heading :
+         {"Band,Reflectance", "Angle (deg),I", "Temperature (K),R", "Year,Value", "Pixel number,R",
+          "inverse nm,R", "Frequency,R", "Energy (keV),R", "Angle of incidence,R"})
+        EXPECT_EQ(place(std::string(heading) + "\n400,0.1\n500,0.2\n", "is not a wavelength"),
+                  (std::pair{1, 1}))
+            << heading;
+    for (const char* head :
+         {"Wavelength (nm),Absorbance", "nm,log(1/R)", "nm,R (dB)", "nm,K/S", "nm,1-R",
+          "nm,Kubelka-Munk", "# unit: permille\nnm,R", "Y Units: Absorbance\nnm,R"})
+        EXPECT_EQ(place(std::string(head) + "\n400,0.1\n500,0.2\n", "no reflectance").first, 1)
+            << head;
+    for (const char* line : {"Scale factor:,0.01,,", "Multiplier,0.01,", "Scale 0.01",
+                             "# factor: 0.01", "# scaled by 100", "Y factor = 1e-2"})
+        EXPECT_EQ(place(std::string(line) + "\nWavelength,Value\n400,45\n", "factor"),
+                  (std::pair{1, 1}))
+            << line;
+    EXPECT_EQ(read("Scale factor,1\nnm,R\n400,0.5\n")(400), 0.5);
+}
+
+TEST_F(SpectrumTables, ARowThatWentWrongIsNoHeading) {
+    EXPECT_EQ(place(",0.9\n400,0.1\n500,0.2\n", "missing"), (std::pair{1, 1}));
+    EXPECT_EQ(place("x400,0.5,\n410,0.6,\n420,0.7,\n", "'x400'"), (std::pair{1, 1}));
+    EXPECT_EQ(place("l00,50%\n410,51%\n", "'l00'"), (std::pair{1, 1}));
+    EXPECT_EQ(place("(400,0.1)\n500,0.2\n", "'(400'"), (std::pair{1, 1}));
+    EXPECT_EQ(place("Infinity,0.1\n500,0.2\n", "finite"), (std::pair{1, 1}));
+    EXPECT_EQ(place("nm;value\n400;0.1\n;0.9\n500;0.2\n", "missing").first, 3);
+    EXPECT_EQ(place(";0.9\n500;0.2\n", "missing").first, 1);
+    EXPECT_EQ(place("\xef\xbb\xbf\xef\xbb\xbf"
+                    "400,0.5,\n410,0.6,\n")
+                  .first,
+              1);
+}
+
 TEST_F(SpectrumTables, RowsAreSortedAndGivenOnce) {
     EXPECT_EQ(read("500,1\n400,2\n")(400), 2.0);
     EXPECT_EQ(read("500,1\n700,3\n400,2\n")(600), 2.0);
