@@ -58,17 +58,6 @@ void refuse_too_few_data(const BispectralData& data, Eigen::Index used, Eigen::I
             "measure more bands, or lower --rank or raise --smooth-nm");
 }
 
-/// Of a few entries nothing tells which part is noise.
-void refuse_unknown_noise(const BispectralData& data, const PreparedTarget& prepared) {
-    constexpr Eigen::Index fewest = 6;
-    const Eigen::Index used = prepared.target.used_count();
-    if (prepared.noise_is_estimated && used < fewest && !prepared.target.value.isZero(0.0))
-        throw_input_error(
-            {data.file.string()},
-            fmt::format("{} usable entries are too few to tell fluorescence from noise", used),
-            "measure more bands, or give the standard errors of the data");
-}
-
 void set_error_bands(const FittedCandidate& candidate, const PreparedTarget& prepared,
                      const FitSettings& settings, FitResult& result) {
     const TermModel& model = *candidate.model;
@@ -113,7 +102,6 @@ void take_terms(const BispectralData& data, const FittedCandidate& candidate,
     result.trace = candidate.fit.trace;
     const auto used = prepared.target.used_count();
     if (!candidate.model) {
-        refuse_unknown_noise(data, prepared);
         judge_residuals(prepared, settings, candidate.fit.chi_squared, static_cast<double>(used),
                         result);
         result.notes.push_back("no fluorescence is seen in the data beyond their noise");

@@ -21,6 +21,8 @@ const NumberRange SCALE = NumberRange::within(0.0, 1e18);
 const NumberRange WAVELENGTH = NumberRange::within(1.0, 1e5);
 constexpr double MAX_RGB = 1e9;
 constexpr double CHECKED_FROM_NM = 200.0, CHECKED_TO_NM = 1000.0;
+/// Lamps are given with lines in the near infrared, such as mercury's at 1014 nm.
+constexpr double LONGEST_PEAK_NM = 2500.0;
 constexpr std::size_t MAX_TERMS = 1000;
 
 std::vector<std::string> keys_of_form(const std::string& form) {
@@ -109,12 +111,14 @@ Spectrum read_rgb(const TableReader& reader) {
     return reflectance_from_rgb({rgb[0] / scale, rgb[1] / scale, rgb[2] / scale}).scaled(scale);
 }
 
-/// Light around one wavelength, refused where nothing of it is seen: its unit is another.
+/// Light around one wavelength, refused where that is in another unit.
 Spectrum read_peak(const TableReader& reader, const std::string& form) {
     const NumberRange width = NumberRange::within(1e-3, 1e4);
     const double nm = reader.number(form, WAVELENGTH);
     const double scale = reader.number_or("scale", 1.0, SCALE);
     const auto require_seen = [&](double reach_nm) {
+        if (nm <= LONGEST_PEAK_NM && nm >= CHECKED_FROM_NM)
+            return;
         require_plausible_range(nm - reach_nm, nm + reach_nm, UnitSource::Fixed,
                                 reader.position_of_key(form));
     };

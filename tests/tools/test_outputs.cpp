@@ -212,7 +212,8 @@ TEST_F(Outputs, WhatIsReadIsNotWrittenOver) {
     ASSERT_EQ(run("render scene.toml -o b.exr --sample-range 1:2 --quiet").exit_code, 0);
     const std::string part = file_bytes(folder / "a.exr");
     expect_failure(2, "merge a.exr b.exr -o a.exr", "would write over what is read");
-    put("lit.toml", small_scene() + "[[light]]\ntype = \"environment\"\nfile = \"a.exr\"\n");
+    put("lit.toml",
+        small_scene() + "[[texture]]\nname = \"t\"\ntype = \"image\"\nfile = \"a.exr\"\n");
     expect_failure(2, "render lit.toml --spp 1 -o a.exr", "would write over what is read");
     EXPECT_EQ(file_bytes(folder / "a.exr"), part);
     for (const char* command :
