@@ -85,6 +85,10 @@ std::vector<std::string> columns_of_words(std::string_view text, std::size_t col
     return columns;
 }
 
+bool has_separator(std::string_view line) {
+    return line.find_first_of(",;\t") != std::string_view::npos;
+}
+
 /// Headings of the columns of a line. The separator is that of the rows where the line has it.
 std::vector<std::string> headings_of(std::string_view line, std::string_view first_row,
                                      std::size_t column_count) {
@@ -277,6 +281,12 @@ private:
 
     /// "# Frequency in THz" above rows that nothing else names.
     void take_remark(const HeadLine& line) {
+        const auto headings = headings_of(line.text, first_row_, column_count_);
+        if (headings.size() == column_count_ && !begins_as_number(headings[1]) &&
+            has_separator(first_row_) == has_separator(line.text)) {
+            require_axis(line, headings[0]);
+            require_quantity(line, headings[1]);
+        }
         const auto unit = stated_wavelength_unit(line.text);
         const std::string text = lower_case(line.text);
         // "Slit in mm" is of no axis.

@@ -165,6 +165,9 @@ TEST_F(SpectrumTables, WhatIsSaidAndNotReadIsRefused) {
         EXPECT_EQ(place(std::string(heading) + "\n400,0.1\n500,0.2\n", "is not a wavelength"),
                   (std::pair{1, 1}))
             << heading;
+    EXPECT_EQ(place("# Year,Value\n400,0.1\n500,0.2\n", "'Year'"), (std::pair{1, 1}));
+    EXPECT_EQ(place("# Band Reflectance\n400 0.1\n500 0.2\n", "'Band'"), (std::pair{1, 1}));
+    EXPECT_EQ(read("# Energy lamp\n400,0.1\n500,0.2\n")(400), 0.1);
     for (const char* head :
          {"Wavelength (nm),Absorbance", "nm,log(1/R)", "nm,R (dB)", "nm,K/S", "nm,1-R",
           "nm,Kubelka-Munk", "# unit: permille\nnm,R", "Y Units: Absorbance\nnm,R"})
