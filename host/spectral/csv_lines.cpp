@@ -5,13 +5,6 @@
 
 namespace reradiant {
 
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return lower;
-}
-
 std::string_view without_padding(std::string_view line) {
     line = trimmed(line);
     while (!line.empty() && (line.back() == ',' || line.back() == ';'))

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/spectral/text_reader.h"
+#include "host/spectral/words.h"
 
 #include <optional>
 #include <string>
@@ -28,9 +29,6 @@ struct HeaderEntry {
 };
 /// Empty for a remark of another form.
 std::optional<HeaderEntry> header_entry(const TextReader& reader, std::string_view line);
-
-/// In lower case.
-std::string lower_case(std::string_view text);
 /// True where one word becomes the other by one letter more, less, other or swapped.
 bool is_misspelt(std::string_view word, std::string_view right);
 

@@ -1,6 +1,7 @@
 #include "host/spectral/head_key.h"
 
 #include "host/spectral/text_reader.h"
+#include "host/spectral/words.h"
 
 #include <algorithm>
 #include <array>
@@ -25,18 +26,6 @@ constexpr std::array<std::string_view, 16> companions{
     "x",           "y",          "by",        "value",        "values",      "data",
     "the",         "conversion", "ordinate",  "correction",   "calibration", "axis",
     "reflectance", "spectral",   "intensity", "transmittance"};
-
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return lower;
-}
-
-template <std::size_t N>
-bool is_one_of(const std::array<std::string_view, N>& known, std::string_view word) {
-    return std::find(known.begin(), known.end(), word) != known.end();
-}
 
 /// Words between blanks, brackets, hyphens and underscores.
 std::vector<std::string> words_of(std::string_view text) {

@@ -19,11 +19,6 @@ std::string_view first_word(std::string_view text) {
     return text.substr(0, std::min(text.find_first_of(" \t,;("), text.size()));
 }
 
-template <std::size_t Count>
-bool is_one_of(std::string_view text, const std::array<const char*, Count>& words) {
-    return std::find(words.begin(), words.end(), text) != words.end();
-}
-
 template <typename Value>
 void set_once(const TextReader& reader, const TextToken& key, std::optional<Value>& field,
               const Value& value) {
@@ -40,8 +35,9 @@ double step_value(const TextReader& reader, TextToken value) {
 
 /// What a value's unit may be called where it is 1. The unit of the axes says nothing of values.
 bool is_unit_one(const std::string& unit) {
-    return is_one_of(unit, std::array{"-", "none", "unity", "unit 1", "fraction", "ratio",
-                                      "dimensionless", "nm", "w/w"}) ||
+    return is_one_of(std::array{"-", "none", "unity", "unit 1", "fraction", "ratio",
+                                "dimensionless", "nm", "w/w"},
+                     unit) ||
            first_word(unit) == "1" || unit.find("reflectance") != std::string::npos ||
            unit.find("radiance factor") != std::string::npos;
 }
@@ -53,7 +49,7 @@ bool names_percent(std::string_view text) {
 void read_unit(const TextReader& reader, const HeaderEntry& entry, CsvHeader& header) {
     const std::string unit = lower_case(entry.value.text);
     const SourcePosition at = reader.position(entry.value);
-    if (is_one_of(unit, std::array{"1/nm", "/nm", "nm-1", "nm^-1", "per nm"})) {
+    if (is_one_of(std::array{"1/nm", "/nm", "nm-1", "nm^-1", "per nm"}, unit)) {
         set_once(reader, entry.key, header.is_percent, false);
         header.per_nm_at = at;
         return;
@@ -93,8 +89,9 @@ bool is_first_of(const TextReader& reader, const TextToken& value, std::string_v
 
 void refuse_factor(const TextReader& reader, const HeaderEntry& entry) {
     if (begins_as_number(entry.value.text) &&
-        is_one_of(entry.name, std::array{"factor", "scale", "scale-factor", "scaling",
-                                         "scaling-factor", "multiplier"}))
+        is_one_of(std::array{"factor", "scale", "scale-factor", "scaling", "scaling-factor",
+                             "multiplier"},
+                  entry.name))
         throw_input_error(reader.position(entry.key),
                           "the line states a factor that is not applied here",
                           "multiply the values by it and leave the line out");
@@ -122,7 +119,7 @@ void read_csv_header_line(const TextReader& reader, std::string_view line, CsvHe
                  is_first_of(reader, value, "allowed", "refused"));
     else if (name == "geometry")
         set_once(reader, key, header.geometry, std::string(value.text));
-    else if (is_one_of(name, std::array{"unit", "units", "value-unit", "value-units", "y-units"}))
+    else if (is_one_of(std::array{"unit", "units", "value-unit", "value-units", "y-units"}, name))
         read_unit(reader, *entry, header);
     else if (name == "emission-step-nm")
         set_once(reader, key, header.emission_step_nm, step_value(reader, value));

@@ -3,6 +3,7 @@
 #include "host/error.h"
 #include "host/spectral/head_key.h"
 #include "host/spectral/text_reader.h"
+#include "host/spectral/words.h"
 
 #include <fmt/format.h>
 
@@ -16,18 +17,6 @@ namespace reradiant {
 namespace {
 
 constexpr std::string_view blanks = " \t\r\f\v";
-
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return lower;
-}
-
-template <std::size_t N>
-bool is_one_of(const std::array<std::string_view, N>& known, std::string_view word) {
-    return std::find(known.begin(), known.end(), word) != known.end();
-}
 
 /// Pieces between any of the separators that no quotation marks enclose.
 std::vector<std::string> pieces_of(std::string_view text, std::string_view separators) {

@@ -1,5 +1,7 @@
 #include "host/spectral/wavelength_unit.h"
 
+#include "host/spectral/words.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -93,14 +95,6 @@ constexpr std::array<std::string_view, 10> axis_companions{
 constexpr std::array<std::string_view, 12> other_quantities{
     "absorbance", "absorbances", "log",      "logarithm", "db",  "decibel",
     "decibels",   "kubelka",     "permille", "permil",    "ppm", "sqrt"};
-
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) {
-        return c < 0x80 ? static_cast<char>(std::tolower(c)) : static_cast<char>(c);
-    });
-    return lower;
-}
 
 /// Runs of letters; every byte beyond ASCII counts as one.
 std::vector<std::string_view> words_of(std::string_view text) {
