@@ -56,6 +56,8 @@ void write_if_it_loads(const ConvertOptions& options, const FileAction& write,
         write(copy);
         read(copy);
     } catch (const Error& error) {
+        if (error.kind() == Error::Kind::Runtime)
+            throw; // the disk is full, say
         throw_input_error({options.in.string()},
                           fmt::format("would become a file that does not load: {}", error.what()),
                           "convert into another format");
