@@ -1,7 +1,6 @@
 #include "host/spectral/csv_lines.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace reradiant {
 

@@ -208,15 +208,12 @@ bool names_wavelengths(std::string_view heading) {
 }
 
 std::string stated_other_axis(std::string_view heading) {
-    const auto is_one_of = [](const auto& known, std::string_view word) {
-        return std::find(known.begin(), known.end(), lower_case(word)) != known.end();
-    };
     const auto words = words_of(heading);
     if (words.empty())
         return {};
     // "Energy saving lamp" and "Second sample" are titles; "Laser energy [mJ]" is an axis.
     for (std::size_t k = 0; k < words.size(); ++k) {
-        if (!is_one_of(other_axes, words[k]))
+        if (!is_one_of(other_axes, lower_case(words[k])))
             continue;
         const auto behind =
             static_cast<std::size_t>(words[k].data() - heading.data()) + words[k].size();
@@ -224,7 +221,7 @@ std::string stated_other_axis(std::string_view heading) {
         const bool ends = next == std::string_view::npos;
         if ((ends && k < 2) ||
             (!ends && std::string_view("([/_{#.").find(heading[next]) != std::string_view::npos) ||
-            (k + 1 < words.size() && is_one_of(axis_companions, words[k + 1])) ||
+            (k + 1 < words.size() && is_one_of(axis_companions, lower_case(words[k + 1]))) ||
             is_inverse(words[k]))
             return std::string(words[k]);
     }
