@@ -74,7 +74,7 @@ TEST(RoundingSteps, NumbersThatAreNotRoundedHaveNone) {
 
 TEST(NoiseEstimate, TwoDecimalsOfARealTable) {
     const BispectralData data = read_bispectral_data(std::filesystem::path(RERADIANT_SOURCE_DIR) /
-                                                     "tests" / "fit" / "data" / "neon-orange.csv");
+                                                     "spectra" / "reradiation" / "neon-orange.csv");
     const FitResult fit = fit_reradiation(data, {});
     EXPECT_EQ(fit.failure, "");
     EXPECT_EQ(fit.shortfall, "");
