@@ -41,13 +41,14 @@ TEST_F(StudyCommand, RendersMeasuresAndShowsEveryCell) {
 }
 
 TEST_F(StudyCommand, OneExposureOfTheSheetShowsTheBodies) {
-    // Bodies of 0.2 and 0.8 beneath light of luminance 1 are seen as they are, of 40 are not.
+    // Beneath radiance 0.5 bodies of 0.2 and 0.8 are well seen, beneath 50 they are lost.
+    put("scene.toml", replaced(small_scene(), "radiance = 1.0", "radiance = 0.5"));
     ASSERT_EQ(run("study study.toml -o as-it-is --json out.json").exit_code, 0);
     EXPECT_EQ(results().at("exposure_ev"), 0.0);
     put("scene.toml", replaced(small_scene(), "radiance = 1.0", "radiance = 50.0"));
     ASSERT_EQ(run("study study.toml -o bright --json out.json").exit_code, 0);
-    // 40 is shown at 0.6: log2(0.6 / 40) = -6.06, written with one digit.
-    EXPECT_NEAR(results().at("exposure_ev").get<double>(), -6.1, 0.11);
+    // Equal energy has 1.205 in red: log2(0.6 / (0.8 x 50 x 1.205)) = -6.33, kept to one digit.
+    EXPECT_NEAR(results().at("exposure_ev").get<double>(), -6.3, 1e-9);
     const std::string page = file_bytes(folder / "bright/index.html");
     EXPECT_NE(page.find("same exposure, -6"), std::string::npos);
     put("study.toml",

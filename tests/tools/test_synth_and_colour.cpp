@@ -96,9 +96,9 @@ TEST_F(SynthAndColour, TheTableOfWavelengthsIsPrintedWhenAskedFor) {
     const std::string plain = run(command).output, table = run(command + " --table").output;
     EXPECT_EQ(plain.find("beta_R"), std::string::npos) << plain;
     EXPECT_TRUE(table.starts_with(plain)) << table;
-    // Its head, and the matrix's 41 emission bands.
+    // Its head, and the matrix's 49 emission bands.
     const std::string rest = table.substr(plain.size());
-    EXPECT_EQ(std::count(rest.begin(), rest.end(), '\n'), 42) << rest;
+    EXPECT_EQ(std::count(rest.begin(), rest.end(), '\n'), 50) << rest;
 }
 
 TEST_F(SynthAndColour, ThePlotShowsBothMatrices) {
