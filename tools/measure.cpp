@@ -1,5 +1,6 @@
 #include "host/measure/measure.h"
 #include "host/error.h"
+#include "host/measure/walk_measurement.h"
 #include "host/measure/walk_states.h"
 #include "host/paths.h"
 #include "host/report/json_file.h"
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -26,7 +28,7 @@ namespace reradiant {
 namespace {
 
 /// What WalkState counts of one theta_i: every group of blocks goes on by itself.
-constexpr double walk_blocks_in_state = static_cast<double>(walk_blocks) / 16.0;
+constexpr double blocks_in_state = static_cast<double>(walk_blocks) / 16.0;
 
 struct MeasureOptions {
     std::filesystem::path material, output;
@@ -78,8 +80,10 @@ using WalkStates = std::function<std::vector<WalkState>()>;
 /// Shows how far walks are, seldom: their states are dear to ask for.
 class WalkProgress {
 public:
-    WalkProgress(bool quiet, std::size_t theta_count)
-        : bar_(quiet), blocks_(walk_blocks_in_state * static_cast<double>(theta_count)) {
+    WalkProgress(bool quiet, const MeasureRequest& request)
+        : bar_(quiet), theta_count_(static_cast<double>(request.theta_i_deg.size())) {
+        const long samples = request.samples > 0 ? request.samples : default_walk_samples;
+        block_size_ = std::ceil(static_cast<double>(samples) / static_cast<double>(walk_blocks));
         bar_.update("setting up tables");
     }
 
@@ -89,15 +93,16 @@ public:
         next_ = Clock::now() + std::chrono::seconds(1);
         double done = 0.0;
         for (const WalkState& state : states())
-            done += static_cast<double>(state.blocks);
-        bar_.update(done / blocks_, "walking");
+            done +=
+                static_cast<double>(state.blocks) + static_cast<double>(state.walks) / block_size_;
+        bar_.update(done / (theta_count_ * blocks_in_state), "walking");
     }
 
 private:
     using Clock = std::chrono::steady_clock;
 
     ProgressBar bar_;
-    double blocks_;
+    double theta_count_, block_size_;
     Clock::time_point next_{};
 };
 
@@ -108,7 +113,7 @@ std::optional<Measurement> measure_and_keep(const MeasureOptions& options, const
                   options.checkpoint_seconds);
     if (options.resume)
         kept.resume([&](const nlohmann::json& state) { request.walked = walk_states_from(state); });
-    WalkProgress progress(quiet, request.theta_i_deg.size());
+    WalkProgress progress(quiet, request);
     request.pause = [&](const WalkStates& states) {
         kept.keep_when_due([&] { return walk_states_json(states()); });
         progress.update(states);

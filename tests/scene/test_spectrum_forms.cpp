@@ -100,8 +100,8 @@ TEST_F(SpectrumForms, ScaleMultipliesWhatHasValuesOfItsOwn) {
     const double once = read("{ rgb = [0.4, 0.3, 0.1] }")(650.0);
     EXPECT_NEAR(read("{ rgb = [0.4, 0.3, 0.1], scale = 1.5 }")(650.0), 1.5 * once, 1e-14);
     EXPECT_EQ(read("{ file = \"s.csv\", scale = 0 }")(450.0), 0.0);
-    EXPECT_EQ(error_column("{ file = \"s.csv\", scale = -1 }", "at least 0"), 29);
-    EXPECT_EQ(error_column("{ file = \"s.csv\", width_nm = 2 }", "unknown key"), 21);
+    EXPECT_EQ(error_column("{ file = \"s.csv\", scale = -1 }", "at least 0"), 30);
+    EXPECT_EQ(error_column("{ file = \"s.csv\", width_nm = 2 }", "unknown key"), 30);
 }
 
 TEST_F(SpectrumForms, WavelengthsOfAnotherUnitAreRefusedAtTheirKey) {
