@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* TREE =
-    R"(The tree, as the tutorial's transcription has it (slightly garbled: c and e are no leaves of it,
-name them by --class):
+    R"(The questions, after Weidlich and Wilkie's tutorial of 2011 (they do not lead to c and e: name these by
+--class):
   reflects environment? yes -> environment blurred? yes -> smooth / metallic, smooth (d)
                                                     no  -> highlight small? yes -> smooth / metallic, smooth (d)
                                                                             no  -> one highlight?

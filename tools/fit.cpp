@@ -216,7 +216,8 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
                             "spacing of the spline functions of factors, 0: one number a band");
     command
         ->add_option("--bytes", options->bytes,
-                     "largest compact form of factors: values at the bands that matter most")
+                     "most bytes that the fitted factors may take: values at the bands that matter "
+                     "most, straight lines between")
         ->excludes(smooth);
     command
         ->add_option("--spill-nm", options->spill_nm,
@@ -231,7 +232,10 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
         ->capture_default_str();
     command->add_option("--memory-limit", options->memory_limit_bytes,
                         "refuse a fit that would take more bytes (default: 80 % of the machine's)");
-    command->add_option("--loss", options->loss, "none, huber or cauchy")->capture_default_str();
+    command
+        ->add_option("--loss", options->loss,
+                     "how outliers count: none (as all others), huber or cauchy (less)")
+        ->capture_default_str();
     command->add_option("--stack", options->stack,
                         "MATERIAL.toml whose layers lay above the sample");
     command

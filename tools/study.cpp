@@ -125,7 +125,9 @@ void add_study_command(CLI::App& program, CommandContext& context) {
     app->add_flag("--resume", command->options.resume,
                   "refuse what was kept of another scene, build or device; without it such a cell "
                   "begins anew");
-    app->footer("Example: reradiant study study.toml -o results");
+    app->footer("All pictures have one exposure, chosen by what they show; exposure_ev in the "
+                "study's [render] sets it.\n"
+                "Example: reradiant study study.toml -o results");
     app->callback([command, &context] { context.exit_code = run(*command, context); });
 }
 
