@@ -79,11 +79,9 @@ int run_check(const CheckCommandOptions& options, const CommonOptions& common) {
     prepare_opencl(common.threads);
     const Device device(common.device);
     const bool in_double = options.check.in_double;
-    if (!common.quiet)
-        print_head(in_double);
+    print_head(in_double);
     CheckReport report = check_device(device, options.check, [&](const FunctionReport& function) {
-        if (!common.quiet)
-            print_row(function, in_double);
+        print_row(function, in_double);
     });
     if (saved)
         compare_results(*saved, report);
@@ -93,10 +91,9 @@ int run_check(const CheckCommandOptions& options, const CommonOptions& common) {
     for (const FunctionReport& function : report.functions)
         for (const std::string& failure : function.failures)
             fmt::print(stderr, "{}: {}: {}\n", function.header, function.name, failure);
-    if (!common.quiet)
-        fmt::print("{} functions on '{}' {} in {:.1f} s, {:.1f} of them building\n",
-                   report.functions.size(), device.info().name,
-                   report.passed() ? "passed" : "FAILED", report.seconds, report.build.seconds);
+    fmt::print("{} functions on '{}' {} in {:.1f} s, {:.1f} of them building\n",
+               report.functions.size(), device.info().name, report.passed() ? "passed" : "FAILED",
+               report.seconds, report.build.seconds);
     return report.passed() ? 0 : exit_check_failed;
 }
 

@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* TREE =
-    R"(The tree, as the tutorial's transcription has it (slightly garbled: c and e are no leaves of it,
-name them by --class):
+    R"(The questions, after Weidlich and Wilkie's tutorial of 2011 (they do not lead to c and e: name these by
+--class):
   reflects environment? yes -> environment blurred? yes -> smooth / metallic, smooth (d)
                                                     no  -> highlight small? yes -> smooth / metallic, smooth (d)
                                                                             no  -> one highlight?
@@ -120,7 +120,7 @@ Json describe(const Classification& result) {
 
 void print(const Classification& result, const std::string& preset) {
     if (!result.top.empty())
-        fmt::print("top: {}\nbase: {}\n", result.top, result.base);
+        fmt::print("top layer: {}\nbase: {}\n", result.top, result.base);
     for (const char letter : result.letters) {
         const MaterialClass& c = material_class(letter);
         fmt::print("class {}: {} ({})\n  presets: {}\n", letter, c.name, c.ranges,
@@ -131,7 +131,7 @@ void print(const Classification& result, const std::string& preset) {
 
 int run_classify(const ClassifyOptions& options, const CommonOptions& common) {
     check_answers(options);
-    check_outputs(common, {{"--output", options.output, {".toml"}}});
+    check_outputs(common, {{"-o", options.output, {".toml"}}});
     const Classification result = classify(options);
     const std::string preset = material_class(result.letters.front()).presets.front();
     const fs::path file = spectra_directory() / "materials" / (preset + ".toml");
@@ -142,11 +142,11 @@ int run_classify(const ClassifyOptions& options, const CommonOptions& common) {
     write_json(common.json, json);
     if (!options.output.empty())
         write_text_atomically(options.output, material);
-    if (!common.quiet) {
-        print(result, preset);
-        options.output.empty() ? fmt::print("\n{}", material)
-                               : fmt::print("written: {}\n", options.output.string());
-    }
+    print(result, preset);
+    if (options.output.empty())
+        fmt::print("\n{}", material);
+    else if (!common.quiet)
+        fmt::print("written: {}\n", options.output.string());
     return 0;
 }
 

@@ -29,7 +29,7 @@ constexpr int exit_no_polygon_passes = 3;
 struct ColourOptions {
     fs::path matrix, against, polygons, plot;
     std::vector<std::string> illuminants{"D65"};
-    bool e308 = false, plain = false;
+    bool e308 = false, plain = false, table = false;
 
     ColourSum sum() const {
         if (e308)
@@ -69,25 +69,33 @@ std::vector<ColourPolygon> read_polygons(const ColourOptions& options) {
     return polygons;
 }
 
-std::vector<ColourReport> report_colours(const ColourOptions& options,
-                                         const ReradiationMatrix& matrix) {
+/// What one lamp shows of the matrix, and of the one that it is compared with.
+struct SeenPair {
+    ColourReport report;
+    std::optional<ColourReport> against;
+};
+
+std::vector<SeenPair> report_colours(const ColourOptions& options,
+                                     const ReradiationMatrix& matrix) {
     const ColourSum sum = options.sum();
     const std::vector<ColourPolygon> polygons = read_polygons(options);
     std::optional<ReradiationMatrix> other;
     if (!options.against.empty())
         other = read_reradiation(options.against);
-    std::vector<ColourReport> reports;
+    std::vector<SeenPair> seen;
     for (const std::string& name : options.illuminants) {
         ColourReport report = report_of_file(options.matrix, matrix, name, sum);
-        if (other)
-            report.ciede2000 = ciede2000(
-                report.colour.lab, report_of_file(options.against, *other, name, sum).colour.lab);
+        std::optional<ColourReport> against;
+        if (other) {
+            against = report_of_file(options.against, *other, name, sum);
+            report.ciede2000 = ciede2000(report.colour.lab, against->colour.lab);
+        }
         for (const ColourPolygon& polygon : polygons)
             if (polygon.illuminant == name)
                 report.polygons.push_back({polygon, test_polygon(polygon, report.colour)});
-        reports.push_back(std::move(report));
+        seen.push_back({std::move(report), std::move(against)});
     }
-    return reports;
+    return seen;
 }
 
 void print_polygons(const ColourReport& report) {
@@ -97,6 +105,14 @@ void print_polygons(const ColourReport& report) {
                    verdict.result.chromaticity ? "inside" : "outside", report.colour.xyz[1] / 100.0,
                    verdict.result.luminance_factor ? "of at least" : "is under",
                    verdict.polygon.minimum_luminance_factor);
+}
+
+/// Radiance factors: total = reflected + luminescent.
+void print_table(const MatrixColour& colour) {
+    fmt::print("  {:>7} {:>9} {:>9} {:>9}\n", "nm", "beta_T", "beta_R", "beta_L");
+    for (std::size_t o = 0; o < colour.nm.size(); ++o)
+        fmt::print("  {:>7.6g} {:>9.5f} {:>9.5f} {:>9.5f}\n", colour.nm[o], colour.total[o],
+                   colour.reflected[o], colour.luminescent[o]);
 }
 
 void print(const ColourReport& report, const ColourOptions& options) {
@@ -120,31 +136,42 @@ void print(const ColourReport& report, const ColourOptions& options) {
     if (report.ciede2000)
         fmt::print("  CIEDE2000 {:.4f} from {}\n", *report.ciede2000, options.against.string());
     print_polygons(report);
-    fmt::print("  {:>7} {:>9} {:>9} {:>9}\n", "nm", "beta_T", "beta_R", "beta_L");
-    for (std::size_t o = 0; o < colour.nm.size(); ++o)
-        fmt::print("  {:>7.6g} {:>9.5f} {:>9.5f} {:>9.5f}\n", colour.nm[o], colour.total[o],
-                   colour.reflected[o], colour.luminescent[o]);
+    if (options.table)
+        print_table(colour);
 }
 
-void write_plot(const ColourOptions& options, const std::vector<ColourReport>& reports) {
+/// `suffix` names the file where two are drawn.
+void add_curves(std::vector<svg::Series>& series, const ColourReport& report, bool reflected,
+                const std::string& suffix) {
+    const MatrixColour& colour = report.colour;
+    series.push_back({report.illuminant + " total" + suffix, colour.nm, colour.total});
+    series.push_back({report.illuminant + " luminescent" + suffix, colour.nm, colour.luminescent});
+    if (reflected) // the same under every lamp
+        series.push_back({"reflected" + suffix, colour.nm, colour.reflected});
+}
+
+void write_plot(const ColourOptions& options, const std::vector<SeenPair>& seen) {
     if (options.plot.empty())
         return;
-    const std::vector<double>& nm = reports.front().colour.nm;
+    const std::string name = options.matrix.filename().string();
+    const std::string other = options.against.filename().string();
+    const bool both = !other.empty();
     std::vector<svg::Series> series;
-    for (const ColourReport& report : reports) {
-        series.push_back({report.illuminant + " total", nm, report.colour.total});
-        series.push_back({report.illuminant + " luminescent", nm, report.colour.luminescent});
-    }
-    series.push_back({"reflected", nm, reports.front().colour.reflected});
-    const svg::Axes axes{.title = options.matrix.filename().string(),
+    for (const SeenPair& pair : seen)
+        add_curves(series, pair.report, &pair == &seen.back(), both ? ", " + name : "");
+    for (const SeenPair& pair : seen)
+        if (pair.against)
+            add_curves(series, *pair.against, &pair == &seen.back(), ", " + other);
+    const svg::Axes axes{.title = both ? name + " and " + other : name,
                          .x_label = "wavelength / nm",
                          .y_label = "radiance factor"};
     write_text_atomically(options.plot, svg::line_plot(axes, series));
 }
 
-bool some_polygon_passes(const std::vector<ColourReport>& reports) {
-    return std::any_of(reports.begin(), reports.end(), [](const ColourReport& report) {
-        return std::any_of(report.polygons.begin(), report.polygons.end(),
+bool some_polygon_passes(const std::vector<SeenPair>& seen) {
+    return std::any_of(seen.begin(), seen.end(), [](const SeenPair& pair) {
+        const auto& polygons = pair.report.polygons;
+        return std::any_of(polygons.begin(), polygons.end(),
                            [](const PolygonVerdict& verdict) { return verdict.result.passes(); });
     });
 }
@@ -169,18 +196,18 @@ int run_colour(ColourOptions options, const CommonOptions& common) {
     check_outputs(common, {{"--plot", options.plot, {".svg"}}},
                   {options.matrix, options.against, options.polygons});
     const ReradiationMatrix matrix = read_reradiation(options.matrix);
-    const std::vector<ColourReport> reports = report_colours(options, matrix);
+    const std::vector<SeenPair> seen = report_colours(options, matrix);
     Json json = Json::object();
-    for (const ColourReport& report : reports) {
+    for (const SeenPair& pair : seen) {
+        const ColourReport& report = pair.report;
         json[report.illuminant] = colour_report_json(report);
         for (const std::string& warning : report.warnings)
             spdlog::warn("{}: {}", options.matrix.string(), warning);
-        if (!common.quiet)
-            print(report, options);
+        print(report, options);
     }
-    write_plot(options, reports);
+    write_plot(options, seen);
     write_json(common.json, json);
-    if (options.polygons.empty() || some_polygon_passes(reports))
+    if (options.polygons.empty() || some_polygon_passes(seen))
         return 0;
     fmt::print(stderr, "{}: the colour passes none of the polygons of {}\n",
                options.matrix.string(), options.polygons.string());
@@ -210,7 +237,11 @@ void add_colour_command(CLI::App& program, CommandContext& context) {
     command->add_option("--polygons", options->polygons,
                         "CSV of chromaticity regions and luminance factors to test against, for "
                         "instance spectra/polygons/en-iso-20471.csv; exit with 3 when none passes");
-    command->add_option("--plot", options->plot, "write the radiance factors as an SVG plot");
+    command->add_flag("--table", options->table,
+                      "print the radiance factors at every wavelength, too: total, reflected, "
+                      "luminescent (the JSON has them anyway)");
+    command->add_option("--plot", options->plot,
+                        "write the radiance factors as an SVG plot, with --against of both");
     command->footer("Examples:\n"
                     "  reradiant colour paint.bfc --illuminant D65,A --json colour.json\n"
                     "  reradiant colour vest.csv --polygons spectra/polygons/en-iso-20471.csv\n"

@@ -48,9 +48,8 @@ int run_compare(const CompareOptions& options, const CommonOptions& common) {
         {"ciede2000", result.ciede2000},
     };
     write_json(common.json, json);
-    if (!common.quiet)
-        for (const auto& [key, value] : json.items())
-            fmt::print("{:<12} {:.9g}\n", key, value.get<double>());
+    for (const auto& [key, value] : json.items())
+        fmt::print("{:<12} {:.9g}\n", key, value.get<double>());
     // Written so that an error that is not a number fails too.
     if (options.max_relmse && !(result.relmse <= *options.max_relmse)) {
         fmt::print(stderr, "{}: relmse {:.9g} is over the limit of {:.9g}\n",

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <memory>
 
 namespace reradiant {
@@ -26,17 +27,39 @@ struct ConvergeCommand {
     std::string methods = "auto,auto+comb:16,weidlich-wilkie", bands;
 };
 
+/// What the run will take at most: methods and references of an earlier run are kept.
+void print_plan(const ConvergeOptions& options) {
+    const double methods = options.time_seconds * static_cast<double>(options.methods.size());
+    const std::string of_methods =
+        fmt::format("{} method{} of {:g} s", options.methods.size(),
+                    options.methods.size() == 1 ? "" : "s", options.time_seconds);
+    if (!options.reference.empty())
+        fmt::print("{}: about {}\n", of_methods, duration_text(methods));
+    else if (options.reference_samples > 0)
+        fmt::print("a reference of {} samples a pixel, then {}\n", options.reference_samples,
+                   of_methods);
+    else
+        fmt::print("a reference of {}, then {}: about {} and the set-up; --reference FILE or "
+                   "--spp-reference N make it less\n",
+                   duration_text(reference_seconds(options)), of_methods,
+                   duration_text(reference_seconds(options) + methods));
+    std::fflush(stdout);
+}
+
 void print_summary(const ConvergeResult& result, const std::filesystem::path& folder) {
     for (const MethodResult& method : result.methods) {
         const ErrorCurve& curve = method.curve;
         const CurveRow& last = curve.rows.back();
         const BiasFloor floor = bias_floor(curve, result.reference.estimate);
-        fmt::print("{}: relMSE {:.3g} after {:.3g} s ({} spp), slope of RMSE {:.3f}, efficiency "
-                   "{:.3g}{}{}\n",
-                   curve.method.name, last.error.relmse, last.seconds, last.samples,
-                   slope_over_samples(curve), efficiency(curve),
-                   floor.relmse > 0.0 ? fmt::format(", bias floor {:.3g}", floor.relmse) : "",
-                   method.resumed ? " (kept from an earlier run)" : "");
+        fmt::print(
+            "{}: relMSE {:.3g} after {:.3g} s ({} samples a pixel), RMSE falls as samples^{:.3f}, "
+            "1 / (relMSE x seconds) {:.3g}{}{}\n",
+            curve.method.name, last.error.relmse, last.seconds, last.samples,
+            slope_over_samples(curve), efficiency(curve),
+            floor.relmse > 0.0
+                ? fmt::format(", its own bias keeps relMSE above {:.3g}", floor.relmse)
+                : "",
+            method.resumed ? " (kept from an earlier run)" : "");
     }
     fmt::print("{}\n", result.interrupted ? "interrupted: run again to go on"
                                           : (folder / "index.html").string());
@@ -60,9 +83,12 @@ int run_converge(ConvergeCommand command, const CommandContext& context) {
     prepare_opencl(common.threads);
     const Device device(common.device);
     catch_interrupts();
+    if (!common.quiet && (!team || team->leads()))
+        print_plan(options);
     ConvergeResult result;
     {
         ProgressBar bar(common.quiet);
+        bar.update("setting up tables and kernels");
         result = converge(scene, device, options, [&](double share, const std::string& note) {
             bar.update(share, note);
             return !interrupt_requested();
@@ -90,8 +116,10 @@ void add_converge_command(CLI::App& program, CommandContext& context) {
         "converge", "Measures error against run time: CSV, JSON, plots and a page");
     app->add_option("SCENE", command->scene, "scene file (TOML)")->required();
     app->add_option("-o,--output", command->options.folder, "folder to write to")->required();
-    app->add_option("--methods", command->methods,
-                    "separated by commas: a model, comb:N, or both as adding+comb:16")
+    app->add_option(
+           "--methods", command->methods,
+           "separated by commas: a model of `render`, comb:N or hero:N (its --wavelengths), "
+           "adaptive, or several in one as adding+comb:16+adaptive")
         ->capture_default_str();
     app->add_option("--reference", command->options.reference,
                     "spectral EXR to compare with; default: one is rendered");

@@ -33,11 +33,10 @@ int run_devices(const CommonOptions& common) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const DeviceInfo& device : devices) {
         list.push_back(to_json(device));
-        if (!common.quiet)
-            fmt::print("{}: {} ({}, {}, {} units, {:.1f} GiB, {})\n", device.index, device.name,
-                       device.platform, device.type, device.compute_units,
-                       static_cast<double>(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0),
-                       device.has_double ? "double" : "no double");
+        fmt::print("{}: {} ({}, {}, {} units, {:.1f} GiB, {})\n", device.index, device.name,
+                   device.platform, device.type, device.compute_units,
+                   static_cast<double>(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0),
+                   device.has_double ? "double" : "no double");
     }
     if (devices.empty())
         Device("0"); // throws the error that says what to install

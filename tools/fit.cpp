@@ -6,6 +6,7 @@
 #include "host/fit/model_file.h"
 #include "host/fit/solve_journal.h"
 #include "host/report/json_file.h"
+#include "host/report/progress.h"
 #include "host/scene/stack_file.h"
 #include "host/spectral/matrix_io.h"
 #include "tools/command.h"
@@ -73,10 +74,13 @@ void print_summary(const FitOptions& options, const FitResult& result) {
     for (std::size_t k = 0; k < result.quantum_yield.size(); ++k) {
         const QuantumYield& yield = result.quantum_yield[k];
         if (std::isfinite(yield.value))
-            fmt::print("quantum yield {}: {:.3f} ({:.3f} to {:.3f})\n", k + 1, yield.value,
-                       yield.low, yield.high);
+            fmt::print("quantum yield {}: {:.3f} ({:.3f} to {:.3f}) of all photons that the "
+                       "sample absorbs; of those that the dye itself absorbs it is as high or "
+                       "higher\n",
+                       k + 1, yield.value, yield.low, yield.high);
     }
-    fmt::print("the data determine {} of {} numbers\n", result.covariance_rank, result.parameters);
+    fmt::print("the data determine {} of the model's {} numbers\n", result.covariance_rank,
+               result.parameters);
     if (result.stack)
         for (std::size_t k = 0; k < result.stack->names.size(); ++k)
             fmt::print("{}: {:.6g} +- {:.2g}\n", result.stack->names[k],
@@ -131,13 +135,18 @@ SampleIdentity fit_identity(const FitOptions& options, const FitSettings& settin
 
 /// Fits with a checkpoint; nothing when it was interrupted, which it says.
 std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings settings,
-                                      const BispectralData& data) {
+                                      const BispectralData& data, bool quiet) {
     KeptWork kept(options.output, fit_identity(options, settings, data),
                   options.checkpoint_seconds);
     SolveJournal journal;
     if (options.resume)
         kept.resume([&](const nlohmann::json& state) { journal = SolveJournal(state); });
-    journal.set_after_step([&] { kept.keep_when_due([&] { return journal.json(); }); });
+    ProgressBar bar(quiet);
+    std::size_t steps = 0;
+    journal.set_after_step([&] {
+        kept.keep_when_due([&] { return journal.json(); });
+        bar.update(fmt::format("{} steps of minimisations", ++steps));
+    });
     settings.solver.journal = &journal;
     settings.solver.stop = interrupt_flag();
     catch_interrupts();
@@ -153,14 +162,14 @@ std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings set
 
 int run_fit(const FitOptions& options, const CommonOptions& common) {
     check_outputs(common,
-                  {{"--output", options.output, {".csv", ".exr", ".bfc"}, true},
+                  {{"-o", options.output, {".csv", ".exr", ".bfc"}, true},
                    {"--report", options.report, {".html"}},
                    {"--model-file", options.model_file, {".toml"}}},
                   {options.data, options.stack});
     const FitSettings settings = settings_of(options, common);
     const BispectralData data = read_bispectral_data(options.data);
     check_fit_memory(data, settings, options.memory_limit_bytes);
-    const std::optional<FitResult> fitted = fit_and_keep(options, settings, data);
+    const std::optional<FitResult> fitted = fit_and_keep(options, settings, data, common.quiet);
     if (!fitted)
         return exit_interrupted;
     const FitResult& result = *fitted;
@@ -198,14 +207,17 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
     command->add_option("-o,--output", options->output, "re-radiation matrix to write")->required();
     command->add_option("--model", options->model, "factors, gaussians or matrix")
         ->capture_default_str();
-    command->add_option("--rank", options->rank,
-                        "terms: 1 to 4 factors or 1 to 24 gaussians; default: by evidence");
+    command->add_option(
+        "--rank", options->rank,
+        "terms (dyes, roughly): 1 to 4 factors or 1 to 24 gaussians; default: as many as "
+        "the data show");
     CLI::Option* const smooth =
         command->add_option("--smooth-nm", options->smooth_nm,
                             "spacing of the spline functions of factors, 0: one number a band");
     command
         ->add_option("--bytes", options->bytes,
-                     "largest compact form of factors: values at the bands that matter most")
+                     "most bytes that the fitted factors may take: values at the bands that matter "
+                     "most, straight lines between")
         ->excludes(smooth);
     command
         ->add_option("--spill-nm", options->spill_nm,
@@ -220,7 +232,10 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
         ->capture_default_str();
     command->add_option("--memory-limit", options->memory_limit_bytes,
                         "refuse a fit that would take more bytes (default: 80 % of the machine's)");
-    command->add_option("--loss", options->loss, "none, huber or cauchy")->capture_default_str();
+    command
+        ->add_option("--loss", options->loss,
+                     "how outliers count: none (as all others), huber or cauchy (less)")
+        ->capture_default_str();
     command->add_option("--stack", options->stack,
                         "MATERIAL.toml whose layers lay above the sample");
     command

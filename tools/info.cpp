@@ -195,8 +195,7 @@ void add_info_command(CLI::App& program, CommandContext& context) {
         check_outputs(context.common, {}, {*file});
         const Json description = describe(*file);
         write_json(context.common.json, description);
-        if (!context.common.quiet)
-            print(description, 0);
+        print(description, 0);
     });
 }
 

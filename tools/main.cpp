@@ -48,9 +48,13 @@ void add_common_options(CLI::App& command, CommonOptions& common) {
         ->check(CLI::Range(0, 65536))
         ->capture_default_str();
     command.add_option("--json", common.json, "write a machine-readable result to this file");
-    CLI::Option* const quiet =
-        command.add_flag("--quiet", common.quiet, "no warnings, no progress bar");
-    command.add_flag("--verbose", common.verbose, "say more")->excludes(quiet);
+    CLI::Option* const quiet = command.add_flag("--quiet", common.quiet,
+                                                "no warnings, no progress, no word of what was "
+                                                "written; results (of colour, info, check, ...) "
+                                                "are printed all the same");
+    command
+        .add_flag("--verbose", common.verbose, "say more: each material's model, what was left out")
+        ->excludes(quiet);
     command.set_version_flag("--version", version_text());
     // Before the command's own callback runs, so that its messages obey.
     command.parse_complete_callback([&common] {

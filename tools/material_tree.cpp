@@ -28,20 +28,20 @@ Classification classify_material(const std::function<bool(Question)>& answer) {
         if (yes(Question::EnvironmentBlurred))
             return leaf("smooth", "metallic, smooth", "d");
         if (yes(Question::HighlightSmall))
-            return leaf("beta smooth", "metallic, smooth", "d");
+            return leaf("smooth", "metallic, smooth", "d");
     } else if (yes(Question::HighlightSmall)) {
-        return leaf("beta smooth", "coloured surface", "ab");
+        return leaf("smooth", "coloured surface", "ab");
     }
     if (yes(Question::OneHighlight))
-        return leaf("beta rough", "metallic, smooth", "f");
-    return leaf("beta rough", "metallic, rough", "gh");
+        return leaf("rough", "metallic, smooth", "f");
+    return leaf("rough", "metallic, rough", "gh");
 }
 
 const std::vector<MaterialClass>& material_classes() {
     static const std::vector<MaterialClass> classes{
         {'a',
          "glossy paint",
-         "top 0.01 to 4 degrees, IOR 1.35 to 1.7, clear; base diffuse",
+         "top layer: roughness 0.01 to 4 degrees, IOR 1.35 to 1.7, clear; base: diffuse",
          {"glossy-paint", "acrylic-lacquer", "ceramic-glaze"}},
         {'b',
          "tinted glazing",
@@ -49,23 +49,23 @@ const std::vector<MaterialClass>& material_classes() {
          {"tinted-glazing", "red-lacquer"}},
         {'c',
          "frosted paint",
-         "top 5 to 40 degrees; base diffuse",
+         "top layer: roughness 5 to 40 degrees; base: diffuse",
          {"frosted-paint", "frosted-acrylic-paint", "sugar", "latex"}},
         {'d',
          "metal foil",
-         "top 3 to 4 degrees; base metallic, up to 2 degrees",
+         "top layer: roughness 3 to 4 degrees; base: metal of up to 2 degrees",
          {"metal-foil", "brass"}},
         {'e',
          "metallic paint",
-         "top smooth; base rough metallic; colour by absorption",
+         "top layer: smooth; base: rough metal; the colour is the top layer's absorption",
          {"metallic-paint", "car-paint", "gold-metallic-paint"}},
         {'f',
          "frosted metal",
-         "top rough; base smooth metallic, which becomes rough",
+         "top layer: rough; base: smooth metal, which looks rough through it",
          {"frosted-metal", "gold-paint", "blue-metallic"}},
         {'g',
          "patina",
-         "top transparent, diffuse, IOR 1.3 to 1.5; base rough metallic",
+         "top layer: transparent, very rough, IOR 1.3 to 1.5; base: rough metal",
          {"patina", "silver-paint"}},
         {'h',
          "multi-layer",

@@ -1,8 +1,10 @@
 #include "host/measure/measure.h"
 #include "host/error.h"
+#include "host/measure/walk_measurement.h"
 #include "host/measure/walk_states.h"
 #include "host/paths.h"
 #include "host/report/json_file.h"
+#include "host/report/progress.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
@@ -15,12 +17,18 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 
 namespace reradiant {
 
 namespace {
+
+/// What WalkState counts of one theta_i: every group of blocks goes on by itself.
+constexpr double blocks_in_state = static_cast<double>(walk_blocks) / 16.0;
 
 struct MeasureOptions {
     std::filesystem::path material, output;
@@ -67,15 +75,48 @@ SampleIdentity walk_identity(const std::filesystem::path& file, const Material& 
             {"seed", std::to_string(request.seed)}};
 }
 
+using WalkStates = std::function<std::vector<WalkState>()>;
+
+/// Shows how far walks are, seldom: their states are dear to ask for.
+class WalkProgress {
+public:
+    WalkProgress(bool quiet, const MeasureRequest& request)
+        : bar_(quiet), theta_count_(static_cast<double>(request.theta_i_deg.size())) {
+        const long samples = request.samples > 0 ? request.samples : default_walk_samples;
+        block_size_ = std::ceil(static_cast<double>(samples) / static_cast<double>(walk_blocks));
+        bar_.update("setting up tables");
+    }
+
+    void update(const WalkStates& states) {
+        if (Clock::now() < next_ || !bar_.is_due())
+            return;
+        next_ = Clock::now() + std::chrono::seconds(1);
+        double done = 0.0;
+        for (const WalkState& state : states())
+            done +=
+                static_cast<double>(state.blocks) + static_cast<double>(state.walks) / block_size_;
+        bar_.update(done / (theta_count_ * blocks_in_state), "walking");
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    ProgressBar bar_;
+    double theta_count_, block_size_;
+    Clock::time_point next_{};
+};
+
 /// Measures with a checkpoint; nothing when it was interrupted, which it says.
 std::optional<Measurement> measure_and_keep(const MeasureOptions& options, const Material& material,
-                                            MeasureRequest request) {
+                                            MeasureRequest request, bool quiet) {
     KeptWork kept(options.output, walk_identity(material_file(options), material, request),
                   options.checkpoint_seconds);
     if (options.resume)
         kept.resume([&](const nlohmann::json& state) { request.walked = walk_states_from(state); });
-    request.pause = [&](const std::function<std::vector<WalkState>()>& states) {
+    WalkProgress progress(quiet, request);
+    request.pause = [&](const WalkStates& states) {
         kept.keep_when_due([&] { return walk_states_json(states()); });
+        progress.update(states);
     };
     request.stop = interrupt_flag();
     catch_interrupts();
@@ -91,11 +132,11 @@ std::optional<Measurement> measure_and_keep(const MeasureOptions& options, const
 
 /// Errors of meaning have no place of their own: they are placed at the material's file.
 std::optional<Measurement> measure_file(const MeasureOptions& options,
-                                        const MeasureRequest& request) {
+                                        const MeasureRequest& request, bool quiet) {
     const std::filesystem::path file = material_file(options);
     const Material material = load_material(file);
     try {
-        return measure_and_keep(options, material, request);
+        return measure_and_keep(options, material, request, quiet);
     } catch (const Error& error) {
         if (error.kind() == Error::Kind::Input && error.position().file.empty()) {
             throw_input_error({file.string()}, error.what());
@@ -117,14 +158,14 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
     if (!options.bands.empty()) {
         request.bands = parse_bands_option(options.bands);
     }
-    check_outputs(common, {{"--output", options.output, {".csv"}}}, {options.material});
+    check_outputs(common, {{"-o", options.output, {".csv"}}}, {options.material});
     // what computes in parallel asks the library how many threads there are
     std::optional<tbb::global_control> threads;
     if (common.threads > 0) {
         threads.emplace(tbb::global_control::max_allowed_parallelism,
                         static_cast<std::size_t>(common.threads));
     }
-    const std::optional<Measurement> measured = measure_file(options, request);
+    const std::optional<Measurement> measured = measure_file(options, request, common.quiet);
     if (!measured)
         return exit_interrupted;
     const Measurement& measurement = *measured;

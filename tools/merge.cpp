@@ -24,7 +24,7 @@ struct MergeCommand {
 
 int run_merge(const MergeCommand& command, const CommandContext& context) {
     check_outputs(context.common,
-                  {{"--output", command.output, {".exr"}}, {"--png", command.png, {".png"}}},
+                  {{"-o", command.output, {".exr"}}, {"--png", command.png, {".png"}}},
                   command.parts);
     check_exposure(command.display.exposure_ev);
     if (!command.png.empty())

@@ -1,14 +1,10 @@
 #include "tools/outputs.h"
 
 #include "host/error.h"
+#include "host/output_ending.h"
 #include "host/output_file.h"
-#include "host/spectral/matrix_io.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <array>
 
 namespace reradiant {
 
@@ -16,24 +12,23 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whatever else a name may end in says nothing about the format.
-constexpr std::array known_endings = {".exr",  ".png", ".csv", ".json", ".html", ".svg", ".toml",
-                                      ".xml",  ".bfc", ".spd", ".ply",  ".obj",  ".hdr", ".pfm",
-                                      ".jpeg", ".jpg", ".tif", ".tiff", ".ocio"};
-
-template <typename List>
-bool holds(const List& list, const std::string& text) {
-    return std::find(list.begin(), list.end(), text) != list.end();
+/// Who writes what the name claims to be: another option of the command, or another command.
+std::string who_writes(const std::string& ending, const NamedOutput& asked,
+                       const std::vector<NamedOutput>& outputs) {
+    for (const NamedOutput& output : outputs)
+        for (const std::string& own : output.endings)
+            if (own == ending && output.option != asked.option)
+                return fmt::format("use {} {} for that", output.option, asked.file.string());
+    return asked.elsewhere;
 }
 
-void check_ending(const NamedOutput& output) {
-    const std::string ending = lower_case_ending(output.file);
-    if (output.endings.empty() || holds(output.endings, ending) ||
-        (!output.ending_chooses && !holds(known_endings, ending)))
+void check_ending(const NamedOutput& output, const std::vector<NamedOutput>& outputs) {
+    if (output.endings.empty())
         return;
-    throw_input_error({output.file.string()},
-                      fmt::format("what {} writes does not fit into '{}'", output.option, ending),
-                      fmt::format("write {}", fmt::join(output.endings, ", ")));
+    const std::string remedy = who_writes(lower_case_ending(output.file), output, outputs);
+    output.ending_chooses
+        ? require_output_ending(output.file, output.endings, output.option, remedy)
+        : check_output_ending(output.file, output.endings, output.option, remedy);
 }
 
 /// The same for all names that links lead to one file by.
@@ -66,7 +61,7 @@ void check_outputs(const CommonOptions& common, std::vector<NamedOutput> outputs
             continue;
         const OutputFile place = output_file(output.file);
         if (!place.is_stream || output.ending_chooses)
-            check_ending(output);
+            check_ending(output, outputs);
         if (place.is_stream) {
             check_output_file(output.file);
             continue;
@@ -87,6 +82,12 @@ void check_outputs(const CommonOptions& common, std::vector<NamedOutput> outputs
 
 fs::path output_directory(const fs::path& given) {
     check_output_folder(given);
+    std::error_code ignored;
+    const std::string ending = lower_case_ending(given);
+    if (is_format_ending(ending) && !fs::is_directory(given, ignored))
+        throw_input_error({given.string()},
+                          fmt::format("-o names a folder here, and the name ends in {}", ending),
+                          "name the folder that pages, tables and pictures go into");
     return given.has_filename() ? given : given.parent_path();
 }
 

@@ -13,9 +13,11 @@ struct NamedOutput {
     std::string option;         ///< "--png", for messages
     std::filesystem::path file; ///< empty: not asked for
     /// Endings of what is written, with the dot, the first one usual. Another ending that is known
-    /// is refused: an EXR called .png is none.
+    /// is refused, naming the option that writes it: an EXR called .png is none.
     std::vector<std::string> endings = {};
     bool ending_chooses = false; ///< which of them is written: one must be there
+    /// What to do for another format that no other option of the command writes.
+    std::string elsewhere = {};
 };
 
 /// Refuses, before work goes into it, whatever a command is told to write and could not: see
@@ -27,7 +29,7 @@ void check_outputs(const CommonOptions& common, std::vector<NamedOutput> outputs
                    const std::filesystem::path& folder = {});
 
 /// A folder to write results into, as it was given but without a slash at its end; refused as
-/// check_output_folder does.
+/// check_output_folder does, and where its name claims to be a file's.
 std::filesystem::path output_directory(const std::filesystem::path& given);
 
 /// FILE.checkpoint beside an output; nothing where that is a device or a pipe.

@@ -37,6 +37,7 @@ struct RenderCommand {
     std::string model = "auto", wavelengths = "comb", bands, variance, sample_range,
                 phase = "random";
     bool samples_given = false;
+    std::size_t outside = 0; ///< pixels outside the display's gamut, once it is written
 
     bool shows_a_display() const {
         return !png.empty() || !display.ocio_config.empty() || !display.display.empty() ||
@@ -71,18 +72,31 @@ void apply_texts(RenderCommand& command, const CommonOptions& common) {
     }
 }
 
-void print_summary(const RenderResult& result, const RenderCommand& command) {
+/// Three lines: what was made, how good it is, how long it took. The rest for who asks.
+void print_summary(const RenderResult& result, const RenderCommand& command,
+                   const CommonOptions& common) {
+    fmt::print("{}: {} x {} pixels, {} bands, {} samples a pixel{}\n", command.output.string(),
+               result.image.width, result.image.height, result.plan.film.count, result.samples,
+               command.png.empty() ? "" : fmt::format("; picture: {}", command.png.string()));
+    const double pixels =
+        static_cast<double>(result.image.width) * static_cast<double>(result.image.height);
+    fmt::print("estimated relMSE {:.3g} (noise of about {:.2g} %){}\n", result.relmse,
+               100.0 * std::sqrt(result.relmse),
+               command.outside > 0
+                   ? fmt::format("; {:.2g} % of the pixels lie outside the display's gamut",
+                                 100.0 * static_cast<double>(command.outside) / pixels)
+                   : "");
     const double rendering = result.trace_seconds + result.shade_seconds;
-    fmt::print("{}: {} samples a pixel, {} bands, estimated relMSE {:.3g}\n",
-               command.output.string(), result.samples, result.plan.film.count, result.relmse);
-    fmt::print("set-up {:.2f} s, kernels {:.2f} s, rays {:.2f} s, shading {:.2f} s; {:.2f} million "
-               "paths/s\n",
-               result.setup_seconds, result.build_seconds, result.trace_seconds,
-               result.shade_seconds,
+    fmt::print("{:.2f} s: set-up {:.2f}, kernels {:.2f}, rays {:.2f}, shading {:.2f}; {:.2f} "
+               "million paths/s\n",
+               result.total_seconds, result.setup_seconds, result.build_seconds,
+               result.trace_seconds, result.shade_seconds,
                rendering > 0.0 ? static_cast<double>(result.paths) / rendering * 1e-6 : 0.0);
+    if (!common.verbose)
+        return;
     for (const std::string& note : result.notes)
         fmt::print("{}\n", note);
-    fmt::print("left out: {}\n", fmt::join(result.left_out, "; "));
+    fmt::print("left out of the kernels: {}\n", fmt::join(result.left_out, "; "));
 }
 
 /// Whether the output is this render already, with as many samples.
@@ -122,6 +136,7 @@ RenderResult render_image(const RenderCommand& command, const CommonOptions& com
         };
     catch_interrupts(); // the pass ends and a checkpoint is written
     ProgressBar bar(common.quiet);
+    bar.update("setting up tables and kernels");
     const auto progress = [&](const RenderProgress& state) {
         const double by_samples = static_cast<double>(state.samples) / command.render.samples;
         const double by_time = state.seconds / command.render.time_seconds;
@@ -133,19 +148,13 @@ RenderResult render_image(const RenderCommand& command, const CommonOptions& com
                            : render(scene, device, command.render, progress, show);
 }
 
-void write_results(const RenderCommand& command, const CommonOptions& common,
-                   const RenderResult& result) {
+void write_results(RenderCommand& command, const RenderResult& result) {
     write_spectral_exr(command.output, result.image, command.display.exposure_ev);
     std::error_code ignored; // not before: what a full disk does not take can be written later
     if (!command.render.checkpoint.empty())
         std::filesystem::remove(command.render.checkpoint, ignored);
-    if (command.png.empty())
-        return;
-    const std::size_t outside = write_display_png(command.png, result.image, command.display);
-    if (outside > 0 && !common.quiet)
-        fmt::print("{} of {} pixels lie outside the display's gamut\n", outside,
-                   static_cast<std::size_t>(result.image.width) *
-                       static_cast<std::size_t>(result.image.height));
+    if (!command.png.empty())
+        command.outside = write_display_png(command.png, result.image, command.display);
 }
 
 std::vector<std::filesystem::path> images_of(const Scene& scene) {
@@ -159,7 +168,7 @@ int run_render(RenderCommand command, const CommandContext& context) {
     CommonOptions common = context.common;
     const std::unique_ptr<Team> team = join_team(common);
     apply_texts(command, common);
-    const std::vector<NamedOutput> outputs = {{"--output", command.output, {".exr"}},
+    const std::vector<NamedOutput> outputs = {{"-o", command.output, {".exr"}},
                                               {"--png", command.png, {".png"}}};
     check_outputs(common, outputs, {command.scene});
     check_exposure(command.display.exposure_ev);
@@ -186,7 +195,7 @@ int run_render(RenderCommand command, const CommandContext& context) {
     describe_image(result, scene, device, command.render, context.command_line);
     if (result.non_finite > 0)
         spdlog::warn("{} samples were not finite and were left out", result.non_finite);
-    write_results(command, common, result);
+    write_results(command, result);
     if (!common.json.empty()) {
         auto json = render_statistics(result, device, command.model);
         if (team)
@@ -194,7 +203,7 @@ int run_render(RenderCommand command, const CommandContext& context) {
         write_json(common.json, json);
     }
     if (!common.quiet)
-        print_summary(result, command);
+        print_summary(result, command, common);
     return 0;
 }
 
@@ -204,7 +213,8 @@ void add_stopping_options(CLI::App& app, RenderCommand& command) {
         ->each([&command](const std::string&) { command.samples_given = true; });
     app.add_option("--time", command.render.time_seconds, "stop after so many seconds")
         ->check(positive_number());
-    app.add_option("--error", command.render.relmse, "stop at this estimated relMSE")
+    app.add_option("--error", command.render.relmse,
+                   "stop at this estimated relMSE: mean of (error / value)^2 over pixels and bands")
         ->check(positive_number());
     app.add_option("--sample-range", command.sample_range,
                    "only samples A to B - 1 of every pixel, as A:B");
@@ -222,16 +232,20 @@ void add_sampling_options(CLI::App& app, RenderCommand& command) {
     app.add_option("--model", command.model,
                    "auto, adding, weidlich-wilkie or walk for every material");
     app.add_option("--wavelengths", command.wavelengths,
-                   "comb or comb:N, N wavelengths a path; hero or hero:N, N sampled of them");
+                   "comb or comb:N: every path carries N wavelengths, spread over the film's bands "
+                   "(default: one a band); hero or hero:N: N of these (default 4), drawn at "
+                   "random, which is noisier");
     app.add_option("--comb-phase", command.phase,
-                   "random: anywhere in a band; centre: at the band centres only")
+                   "where in its band a wavelength of the comb lies. random: anywhere; centre: at "
+                   "its centre")
         ->check(CLI::IsMember({"random", "centre"}));
     app.add_option("--bands", command.bands, "film bands in nm, FROM:TO:STEP");
     app.add_option("--variance", command.variance, "bands: variance per band, too")
         ->check(CLI::IsMember({"bands"}));
     app.add_flag("--adaptive", command.render.adaptive,
                  "more samples where the error is; --spp is then the mean over pixels");
-    app.add_flag("--all-features", command.render.all_features, "specialise nothing");
+    app.add_flag("--all-features", command.render.all_features,
+                 "compile everything, also what the scene does not need");
     app.add_flag("--double", command.render.in_double,
                  "kernels in double precision, to see what single costs (sums over wavelengths and "
                  "what is stored stay single)");

@@ -4,6 +4,7 @@
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
 #include "host/study/contact_sheet.h"
+#include "host/study/sheet_exposure.h"
 #include "host/study/study_page.h"
 #include "host/study/study_store.h"
 #include "tools/command.h"
@@ -40,6 +41,7 @@ nlohmann::ordered_json result_json(const Study& study, const StudyResult& result
                                    {"cells", study.cell_count()},
                                    {"failed", failed_cells(result)},
                                    {"interrupted", result.interrupted},
+                                   {"exposure_ev", result.exposure_ev},
                                    {"results", nlohmann::ordered_json::array()}};
     for (const CellResult& cell : result.cells) {
         nlohmann::ordered_json entry = {{"cell", cell.index}, {"name", cell_name(study, cell)}};
@@ -53,9 +55,9 @@ nlohmann::ordered_json result_json(const Study& study, const StudyResult& result
     return json;
 }
 
-void write_results(const Study& study, const StudyResult& result,
-                   const std::filesystem::path& folder) {
+void write_results(const Study& study, StudyResult& result, const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
+    result.exposure_ev = sheet_exposure_ev(study, result);
     write_study_table(folder / "table.csv", study, result);
     write_contact_sheet(folder / "contact-sheet.png", study, result);
     write_text_atomically(folder / "index.html", study_page(study, result));
@@ -83,6 +85,7 @@ int run(StudyCommand command, const CommandContext& context) {
     StudyResult result;
     {
         ProgressBar bar(common.quiet);
+        bar.update("setting up the first cell");
         result = run_study(study, device ? &*device : nullptr, options,
                            [&](double share, const std::string& note) {
                                bar.update(share, note);
@@ -122,7 +125,9 @@ void add_study_command(CLI::App& program, CommandContext& context) {
     app->add_flag("--resume", command->options.resume,
                   "refuse what was kept of another scene, build or device; without it such a cell "
                   "begins anew");
-    app->footer("Example: reradiant study study.toml -o results");
+    app->footer("All pictures have one exposure, chosen by what they show; exposure_ev in the "
+                "study's [render] sets it.\n"
+                "Example: reradiant study study.toml -o results");
     app->callback([command, &context] { context.exit_code = run(*command, context); });
 }
 

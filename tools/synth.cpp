@@ -22,16 +22,6 @@ struct SynthOptions {
     fs::path recipe, output, truth;
 };
 
-void check_outputs(const SynthOptions& options, const CommonOptions& common) {
-    if (lower_case_ending(options.output) != ".csv")
-        throw_input_error({options.output.string()}, "data are written as .csv only",
-                          "name a .csv; `reradiant convert` makes other formats of a bare matrix");
-    check_outputs(common,
-                  {{"--output", options.output, {".csv"}},
-                   {"--truth", options.truth, {".csv", ".exr", ".bfc"}, true}},
-                  {options.recipe});
-}
-
 /// Errors of meaning have no place of their own: they are placed at the recipe.
 SynthResult synthesise_file(const SynthRecipe& recipe, const fs::path& file, unsigned seed) {
     try {
@@ -63,7 +53,14 @@ Json describe(const SynthOptions& options, const SynthRecipe& recipe, const Synt
 }
 
 int run_synth(const SynthOptions& options, const CommonOptions& common) {
-    check_outputs(options, common);
+    check_outputs(common,
+                  {{"-o",
+                    options.output,
+                    {".csv"},
+                    true,
+                    "`reradiant convert` makes other formats of a bare matrix"},
+                   {"--truth", options.truth, {".csv", ".exr", ".bfc"}, true}},
+                  {options.recipe});
     const SynthRecipe recipe = read_synth_recipe(options.recipe);
     const SynthResult result = synthesise_file(recipe, options.recipe, common.seed);
     const ReradiationMatrix truth = synth_truth(recipe);
@@ -100,9 +97,9 @@ void add_synth_command(CLI::App& program, CommandContext& context) {
     command->add_option("--truth", options->truth,
                         "write the substrate's matrix without noise (.csv, .exr, .bfc)");
     command->footer("Examples:\n"
-                    "  reradiant synth tools/examples/synth-orange.toml -o orange.csv --seed 7\n"
-                    "  reradiant synth tools/examples/synth-varnished.toml -o data.csv --truth "
-                    "truth.csv");
+                    "  reradiant synth tools/examples/synth-orange.toml -o ~/orange.csv --seed 7\n"
+                    "  reradiant synth tools/examples/synth-varnished.toml -o ~/data.csv "
+                    "--truth ~/truth.csv");
     command->callback(
         [options, &context] { context.exit_code = run_synth(*options, context.common); });
 }

@@ -161,10 +161,8 @@ void add_validate_command(CLI::App& program, CommandContext& context) {
         check_outputs(context.common, {}, {options->file});
         const Json result = validate(options->file);
         write_json(context.common.json, result);
-        if (!context.common.quiet) {
-            print(result, "");
-            fmt::print("valid\n");
-        }
+        print(result, "");
+        fmt::print("valid\n");
     });
 }
 

@@ -65,8 +65,9 @@ void note_lowered(const PreparedTarget& prepared, const Eigen::VectorXd& room, F
 
 std::string first_fault(const FitResult& result) {
     if (!result.trace.converged)
-        return fmt::format("the fit did not converge: {} (KKT violation {:.2g})",
-                           result.trace.stop_reason, result.trace.kkt);
+        return fmt::format(
+            "the fit did not converge: {} (the conditions of a minimum are missed by {:.2g})",
+            result.trace.stop_reason, result.trace.kkt);
     if (!result.matrix.values.allFinite())
         return "the fitted matrix holds values that are not finite";
     if (result.matrix.values.minCoeff() < 0.0)

@@ -42,22 +42,25 @@ void add_numbers(HtmlPage& page, const BispectralData& data, const FitResult& re
         {"model", fit_model_name(result.model)},
         {"terms", std::to_string(result.rank)},
         {"bytes of the compact form", std::to_string(result.bytes)},
-        {"relative RMSE beyond one step", fmt::format("{:.5f}", result.relative_rmse)},
+        {"relative RMSE (emission more than one band above the excitation)",
+         fmt::format("{:.5f}", result.relative_rmse)},
         {"RMSE of the fitted entries", fmt::format("{:.4g}", result.rmse)},
         {result.noise_is_estimated ? "noise (estimated)" : "noise (given)",
          fmt::format("{:.4g}", result.noise)},
-        {"reduced chi squared", fmt::format("{:.4g}", result.reduced_chi_squared)},
+        {"reduced chi squared (1 where only noise is left)",
+         fmt::format("{:.4g}", result.reduced_chi_squared)},
         {"why it stopped", result.trace.stop_reason},
-        {"KKT violation", fmt::format("{:.2g}", result.trace.kkt)},
+        {"distance from a minimum (violation of the KKT conditions)",
+         fmt::format("{:.2g}", result.trace.kkt)},
         {"iterations", std::to_string(result.trace.iterations)},
-        {"numbers determined by the data",
+        {"numbers of the model that the data determine",
          fmt::format("{} of {}", result.covariance_rank, result.parameters)},
         {"anti-Stokes energy", fmt::format("{:.3g}", result.anti_stokes_energy)},
         {"peak memory", fmt::format("{:.0f} MiB", peak_memory_mib())}};
     if (!result.trace.seconds.empty())
         rows.push_back({"seconds", fmt::format("{:.2f}", result.trace.seconds.back())});
     if (result.model == FitModel::Factors && result.rank > 0)
-        rows.push_back({"functions", functions_text(result)});
+        rows.push_back({"emission and excitation are", functions_text(result)});
     page.table({"", ""}, rows);
     if (!result.shortfall.empty())
         page.paragraph("Not done: " + result.shortfall + ".");
@@ -81,9 +84,11 @@ void add_yields(HtmlPage& page, const FitResult& result) {
         rows.push_back({std::to_string(k + 1), fmt::format("{:.4f}", yield.value),
                         fmt::format("{:.4f}", yield.low), fmt::format("{:.4f}", yield.high)});
     }
-    page.table({"term", "photons out / photons absorbed", "95 % from", "to"}, rows);
-    page.paragraph("Absorbed is what the diagonal does not reflect, so that absorption without "
-                   "emission lowers the yield.");
+    page.table({"term", "photons emitted / photons absorbed by the sample", "95 % from", "to"},
+               rows);
+    page.paragraph("The sample absorbs what its diagonal does not reflect, by its dye or by "
+                   "anything else. The yield of the dye itself, of the photons that the dye "
+                   "absorbs, is as high or higher: the data cannot tell who absorbed a photon.");
 }
 
 void add_stack(HtmlPage& page, const FitResult& result) {

@@ -140,11 +140,12 @@ private:
         trace_.converged = trace_.kkt <= settings_.kkt_tolerance;
         if (trace_.converged) {
             trace_.stop_reason =
-                fmt::format("the KKT conditions hold to {:.1e}", settings_.kkt_tolerance);
+                fmt::format("the conditions of a minimum hold to {:.1e}", settings_.kkt_tolerance);
         } else if (idle_ >= most_idle_steps || damping_.is_hopeless()) {
             trace_.converged = trace_.kkt <= kkt_of_rounding;
             trace_.stop_reason = fmt::format(
-                "no step lowers the cost any more; the KKT conditions hold to {:.1e}", trace_.kkt);
+                "no step lowers the cost any more; the conditions of a minimum hold to {:.1e}",
+                trace_.kkt);
         } else if (seconds() > settings_.most_seconds) {
             trace_.stop_reason = "the limit of time was reached";
         } else if (trace_.iterations >= settings_.most_iterations) {
@@ -153,7 +154,7 @@ private:
                 trace_.converged
                     ? fmt::format(
                           "the limit of iterations was reached, where a hundred steps lower "
-                          "the cost by less than {}; the KKT conditions hold to {:.1e}",
+                          "the cost by less than {}; the conditions of a minimum hold to {:.1e}",
                           hardly, trace_.kkt)
                     : "the limit of iterations was reached";
         }

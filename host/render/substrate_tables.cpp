@@ -138,13 +138,15 @@ private:
             return;
         out_.features.fluorescence = true;
         if (on_cells_.is_factored()) {
-            out_.notes.push_back(
-                fmt::format("material '{}': re-radiation of rank {}", name_, op.emission.cols()));
+            out_.notes.push_back(fmt::format(
+                "material '{}': re-radiation as a sum of {} products of an emission and an "
+                "excitation",
+                name_, op.emission.cols()));
             return;
         }
         out_.features.dense_matrix = true;
-        out_.notes.push_back(fmt::format("material '{}': dense re-radiation matrix, it does not "
-                                         "factor to few terms or holds anti-Stokes emission",
+        out_.notes.push_back(fmt::format("material '{}': re-radiation entry by entry, as it is no "
+                                         "sum of few products or holds anti-Stokes emission",
                                          name_));
     }
 

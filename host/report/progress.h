@@ -1,12 +1,14 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 namespace reradiant {
 
-/// A progress bar on standard error: only when that is a terminal and nobody asked for quiet,
-/// so that logs and pipes hold no control characters.
+/// How far work is and how long it will take, on standard error unless somebody asked for quiet. On
+/// a terminal a bar; elsewhere, so that logs and pipes hold no control characters, one line early
+/// in work that takes long.
 class ProgressBar {
 public:
     explicit ProgressBar(bool quiet);
@@ -15,15 +17,34 @@ public:
     ProgressBar& operator=(const ProgressBar&) = delete;
 
     /// Share done, 0 to 1, with a short note behind the bar. Redraws at most ten times a second.
+    /// What is left is estimated from the first share that was told: what an earlier run did took
+    /// no time now.
     void update(double share, const std::string& note);
+    /// For work whose end nobody knows: the note, and the seconds since the bar was made.
+    void update(const std::string& note);
+    /// Whether an update would show anything now, for shares that are dear to find out.
+    bool is_due() const;
 
 private:
-    bool visible_;
-    bool drawn_ = false;
-    std::chrono::steady_clock::time_point next_{};
+    using Clock = std::chrono::steady_clock;
+
+    double seconds_since(Clock::time_point start) const;
+    void draw(const std::string& line);
+
+    bool quiet_, terminal_;
+    bool drawn_ = false, announced_ = false;
+    Clock::time_point made_ = Clock::now(), first_{}, next_{};
+    std::optional<double> first_share_;
 };
 
 /// One line of the bar, without control characters: "[######----]  60 % note".
 std::string progress_line(double share, const std::string& note, int width = 30);
+
+/// "12 s", "3 min", "1.2 h"
+std::string duration_text(double seconds);
+
+/// Seconds to the end of work that came from one share to another in so many; nothing while that
+/// says little: before two seconds, or a hundredth of the work.
+std::optional<double> seconds_left(double seconds, double from_share, double share);
 
 } // namespace reradiant

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,9 +28,7 @@ constexpr std::size_t MAX_TERMS = 1000;
 
 std::vector<std::string> keys_of_form(const std::string& form) {
     if (form == "nm")
-        return {"nm", "value"};
-    if (form == "file" || form == "rgb")
-        return {form};
+        return {"nm", "value", "scale"};
     if (form == "line_nm")
         return {form, "width_nm", "scale"};
     if (form == "gaussian_nm")
@@ -133,14 +132,25 @@ Spectrum read_peak(const TableReader& reader, const std::string& form) {
     return Spectrum::gaussian(nm, sigma_nm, scale);
 }
 
+/// What holds values of its own is multiplied by scale, a lamp's file too: whether its values are
+/// radiances or shares of the largest, no luminance is put in their place.
+Spectrum multiplied(const TableReader& reader, Spectrum spectrum) {
+    const double scale = reader.number_or("scale", 1.0, SCALE);
+    return scale == 1.0 ? std::move(spectrum) : spectrum.scaled(scale);
+}
+
+Spectrum read_file(const TableReader& reader, LoadState& state) {
+    return read_spectrum(
+        state.resolve_and_digest(reader.text("file"), reader.position_of_key("file")));
+}
+
 Spectrum read_form(const TableReader& reader, const std::string& form, LoadState& state) {
     if (form == "nm")
-        return read_table(reader);
+        return multiplied(reader, read_table(reader));
     if (form == "file")
-        return read_spectrum(
-            state.resolve_and_digest(reader.text("file"), reader.position_of_key("file")));
+        return multiplied(reader, read_file(reader, state));
     if (form == "rgb")
-        return read_rgb(reader);
+        return multiplied(reader, read_rgb(reader));
     if (form == "illuminant")
         return read_illuminant(reader);
     if (form == "blackbody_kelvin")

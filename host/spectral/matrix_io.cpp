@@ -23,14 +23,6 @@ constexpr std::size_t most_entries = std::size_t{1} << 22;
 
 } // namespace
 
-std::string lower_case_ending(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    for (char& letter : ending)
-        if (letter >= 'A' && letter <= 'Z')
-            letter = static_cast<char>(letter - 'A' + 'a');
-    return ending;
-}
-
 void require_matrix_size(const SourcePosition& position, std::size_t rows, std::size_t columns) {
     if (columns > 0 && rows > most_entries / columns)
         throw_input_error(position, fmt::format("{} x {} entries are too many", rows, columns),

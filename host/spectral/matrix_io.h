@@ -1,5 +1,6 @@
 #pragma once
 
+#include "host/output_ending.h"
 #include "host/spectral/reradiation.h"
 
 #include <filesystem>
@@ -35,8 +36,6 @@ void write_reradiation_csv(const std::filesystem::path& file, const ReradiationM
 /// True when a file holds a re-radiation matrix rather than a spectrum: .bfc, .exr, or a .csv
 /// whose first lines say so. Input Error when a text cannot be read.
 bool holds_reradiation(const std::filesystem::path& file);
-/// Ending of a file name in small letters, with its dot.
-std::string lower_case_ending(const std::filesystem::path& file);
 
 /// Reads a spectrum by what the file says it is, whatever its ending: JCAMP-DX, CGATS, IES TM-27
 /// (spectrum_formats.h), else a table of two columns (number_table.h).

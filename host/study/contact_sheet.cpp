@@ -54,16 +54,19 @@ void write_contact_sheet(const std::filesystem::path& file, const Study& study,
         if (!cell.has_image || cell.failed())
             continue;
         const SpectralImage image = read_spectral_exr(cell.folder / "image.exr");
+        DisplayOptions display;
+        display.exposure_ev = result.exposure_ev;
+        const DisplayPicture picture = display_picture(image, display);
+        write_png(cell.folder / "image.png", image.width, image.height, picture.rgb,
+                  picture.is_srgb);
         const int step = (image.width + widest_cell - 1) / widest_cell;
         const int width = image.width / step, height = std::max(1, image.height / step);
         if (!sheet)
             sheet.emplace(layout, width, height);
         if (width != sheet->cell_width || height != sheet->cell_height)
             continue; // a swept film size: the sheet shows the first
-        DisplayOptions display;
-        display.exposure_ev = study.rendering->exposure_ev;
-        sheet->put(cell.index / layout.columns, cell.index % layout.columns,
-                   display_picture(image, display).rgb, image.width, step);
+        sheet->put(cell.index / layout.columns, cell.index % layout.columns, picture.rgb,
+                   image.width, step);
     }
     if (sheet)
         write_png(file, sheet->width, sheet->height, sheet->rgb, true);

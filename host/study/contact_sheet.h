@@ -12,8 +12,9 @@ struct SheetLayout {
 };
 SheetLayout sheet_layout(const Study& study);
 
-/// Pictures of all cells side by side, 4 grey pixels between them; cells that failed stay grey.
-/// Writes nothing when no cell has an image.
+/// Pictures of all cells side by side at the result's exposure, 4 grey pixels between them; cells
+/// that failed stay grey. The cells' own pictures, image.png, are written anew at it: what it is,
+/// only all cells together tell. Writes nothing when no cell has an image.
 void write_contact_sheet(const std::filesystem::path& file, const Study& study,
                          const StudyResult& result);
 

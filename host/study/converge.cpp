@@ -19,7 +19,6 @@ namespace {
 
 /// Two rows a doubling of time.
 constexpr double time_ratio = std::numbers::sqrt2;
-constexpr double reference_time_factor = 10.0;
 constexpr std::uint32_t unlimited_samples = 1u << 30;
 
 RenderOptions method_options(const ConvergeOptions& options, const RenderMethod& method,
@@ -50,8 +49,9 @@ std::string common_identity(const Scene& scene, const Device& device,
 }
 
 double share_of_reference(const ConvergeOptions& options) {
-    return reference_time_factor /
-           (reference_time_factor + static_cast<double>(options.methods.size()));
+    const double reference = reference_seconds(options);
+    return reference /
+           (reference + options.time_seconds * static_cast<double>(options.methods.size()));
 }
 
 /// One run: the reference, then the methods one after the other.
@@ -102,7 +102,7 @@ private:
         RenderOptions render = method_options(options_, {}, ~result_.seed);
         render.time_seconds = options_.reference_samples > 0
                                   ? std::numeric_limits<double>::infinity()
-                                  : reference_time_factor * options_.time_seconds;
+                                  : reference_seconds(options_);
         if (options_.reference_samples > 0)
             render.samples = options_.reference_samples;
         const std::string identity =
@@ -305,6 +305,11 @@ private:
 };
 
 } // namespace
+
+double reference_seconds(const ConvergeOptions& options) {
+    constexpr double times_a_method = 10.0;
+    return times_a_method * options.time_seconds;
+}
 
 ConvergeResult converge(const Scene& scene, const Device& device, const ConvergeOptions& options,
                         const StudyProgress& progress) {

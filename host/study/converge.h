@@ -50,6 +50,9 @@ struct ConvergeResult {
 /// Share done, 0 to 1, and a note; returning false stops.
 using StudyProgress = std::function<bool(double share, const std::string& note)>;
 
+/// Seconds that a reference without a count of samples is rendered for.
+double reference_seconds(const ConvergeOptions& options);
+
 /// Renders a scene by every method, and compares with the reference at geometric steps of time.
 /// Finished methods are kept in `folder` and not rendered again there by a run with the same
 /// scene, seed, reference and time; one that was interrupted goes on from its checkpoint. Input

@@ -12,19 +12,11 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <chrono>
 #include <sstream>
 
 namespace reradiant {
 
 namespace {
-
-std::string duration_text(double seconds) {
-    if (seconds < 60.0)
-        return fmt::format("{:.0f} s", seconds);
-    return seconds < 3600.0 ? fmt::format("{:.0f} min", seconds / 60.0)
-                            : fmt::format("{:.1f} h", seconds / 3600.0);
-}
 
 /// Everything that a cell's results depend on.
 std::string identity_of(const Study& study, const std::vector<ChosenValue>& values,
@@ -35,8 +27,8 @@ std::string identity_of(const Study& study, const std::vector<ChosenValue>& valu
         text << ' ' << static_cast<int>(chosen.sweep->kind)
              << fmt::format(" {}", chosen.sweep->path) << toml::toml_formatter(chosen.value->boxed);
     if (const auto& r = study.rendering)
-        text << fmt::format(" render {} {} {} {} {}", r->samples, static_cast<int>(r->method.model),
-                            r->method.comb_count, r->method.hero_count, r->exposure_ev);
+        text << fmt::format(" render {} {} {} {}", r->samples, static_cast<int>(r->method.model),
+                            r->method.comb_count, r->method.hero_count);
     if (const auto& m = study.measuring)
         text << fmt::format(" measure {} {} {} {} {} {}", m->samples, m->theta_i_deg,
                             m->theta_o_deg, m->phi_deg, m->illuminants, static_cast<int>(m->model));
@@ -156,6 +148,7 @@ private:
                         options_.render.seed);
         cell.identity = identity;
         if (restore_cell(cell, identity)) {
+            ++kept_;
             result_.interrupted = !report(cell, 0.0, "kept");
             return;
         }
@@ -194,7 +187,7 @@ private:
         rendered.image.attributes["reradiant:sceneHash"] = scene.hash;
         rendered.image.attributes["reradiant:seed"] = std::to_string(render.seed);
         cell.relmse = rendered.relmse;
-        keep_image(cell, rendered.image, study_.rendering->exposure_ev);
+        keep_image(cell, rendered.image, study_.rendering->exposure_ev.value_or(0.0));
     }
 
     void measure(const Scene& scene, const std::vector<ChosenValue>& values, CellResult& cell) {
@@ -225,16 +218,12 @@ private:
         return named;
     }
 
+    /// Cells that an earlier run did are no part of this one's work.
     bool report(const CellResult& cell, double share, const std::string& note) const {
-        const auto count = static_cast<double>(study_.cell_count());
-        const double seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        const double done = static_cast<double>(done_now_) + share;
-        const double left = count - static_cast<double>(cell.index) - share;
-        const std::string time =
-            done > 0.0 ? fmt::format(", {} left", duration_text(seconds / done * left)) : "";
-        return progress_((static_cast<double>(cell.index) + share) / count,
-                         fmt::format("cell {} of {:.0f}: {}{}", cell.index + 1, count, note, time));
+        const std::size_t count = study_.cell_count();
+        const double work = static_cast<double>(std::max<std::size_t>(count - kept_, 1));
+        return progress_((static_cast<double>(done_now_) + share) / work,
+                         fmt::format("cell {} of {}: {}", cell.index + 1, count, note));
     }
 
     const Study& study_;
@@ -242,16 +231,17 @@ private:
     const StudyOptions& options_;
     const StudyProgress& progress_;
     StudyResult result_;
-    std::size_t done_now_ = 0;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::size_t done_now_ = 0, kept_ = 0;
 };
 
 } // namespace
 
 std::string cell_name(const Study& study, const CellResult& cell) {
     std::vector<std::string> parts;
+    const std::vector<std::size_t> indices = study.cell_values(cell.index);
     for (std::size_t k = 0; k < study.sweeps.size(); ++k)
-        parts.push_back(fmt::format("{} = {}", study.sweeps[k].label, cell.labels[k]));
+        parts.push_back(fmt::format("{} = {}", study.sweeps[k].label,
+                                    study.sweeps[k].values[indices[k]].shown));
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 

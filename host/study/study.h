@@ -41,6 +41,7 @@ struct CellResult {
 struct StudyResult {
     std::vector<CellResult> cells;
     bool interrupted = false; ///< cells that were done are kept, and here
+    double exposure_ev = 0.0; ///< of the pictures on sheet and page, see sheet_exposure_ev
 };
 
 /// Renders and measures every cell of a study into cells/NNNN beneath the folder. A cell that fails
@@ -51,7 +52,7 @@ struct StudyResult {
 StudyResult run_study(const Study& study, const Device* device, const StudyOptions& options,
                       const StudyProgress& progress);
 
-/// "thickness = 0.5, roughness = 10"
+/// "thickness = 0.5 units, roughness = 10 deg"
 std::string cell_name(const Study& study, const CellResult& cell);
 
 } // namespace reradiant

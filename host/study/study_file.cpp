@@ -59,8 +59,9 @@ private:
             reader.fail(width_ > 0 ? "width" : "height", "the film's size is given by half",
                         "give both width and height");
         rendering.samples = static_cast<std::uint32_t>(reader.integer_or("spp", 64, 1, 1 << 30));
-        rendering.exposure_ev =
-            reader.number_or("exposure_ev", 0.0, NumberRange::within(-100.0, 100.0));
+        if (reader.has("exposure_ev"))
+            rendering.exposure_ev =
+                reader.number("exposure_ev", NumberRange::within(-100.0, 100.0));
         for (const char* key : {"model", "wavelengths"})
             if (reader.has(key))
                 add_method(reader, key, rendering.method);

@@ -19,6 +19,7 @@ enum class SweepKind { Key, Angle, Concentration, Illuminant, Matrix };
 struct SweepValue {
     toml::array boxed; ///< one element: the value (toml++ has no node by value)
     std::string label;
+    std::string shown; ///< the label with its unit, for pages and messages
     SourcePosition position;
 
     const toml::node& node() const { return boxed[0]; }
@@ -27,6 +28,7 @@ struct SweepValue {
 /// One parameter and the values that it takes.
 struct Sweep {
     std::string label; ///< of axes and columns
+    std::string unit;  ///< of values that are numbers, "deg"; empty: none is known
     SweepKind kind = SweepKind::Key;
     /// Where in the scene's tables, part by part: keys, and of arrays an index or a `name`. Of the
     /// illuminant: of every light, or of the one that is named.
@@ -39,7 +41,7 @@ struct Sweep {
 struct StudyRendering {
     std::uint32_t samples = 64;
     RenderMethod method;
-    double exposure_ev = 0.0;
+    std::optional<double> exposure_ev; ///< of all pictures; empty: chosen by what they show
 };
 
 /// A virtual goniophotometer's angles, in degrees, and the light that colours are seen under.

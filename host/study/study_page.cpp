@@ -100,7 +100,7 @@ Json study_json(const Study& study, const StudyResult& result) {
     for (const Sweep& sweep : study.sweeps) {
         Json values = Json::array();
         for (const SweepValue& value : sweep.values)
-            values.push_back(value.label);
+            values.push_back(value.shown);
         json["sweeps"].push_back({{"label", sweep.label}, {"values", values}});
     }
     for (const Rgb8& colour : sequential_colours())
@@ -129,6 +129,25 @@ std::string script_safe(const Json& json) {
     return safe;
 }
 
+/// The exposure that makes the pictures comparable, and the unit that lengths have.
+std::string sheet_notes(const Study& study, const StudyResult& result) {
+    std::string notes;
+    if (std::any_of(result.cells.begin(), result.cells.end(),
+                    [](const CellResult& cell) { return cell.has_image; }))
+        notes += fmt::format("<p>All pictures are at the same exposure, {:+.3g} EV{}.</p>\n",
+                             result.exposure_ev,
+                             study.rendering && study.rendering->exposure_ev
+                                 ? ""
+                                 : ", chosen so that no sample's body is lost in white "
+                                   "(exposure_ev in the study's [render] sets another)");
+    if (std::any_of(study.sweeps.begin(), study.sweeps.end(), [](const Sweep& sweep) {
+            return sweep.unit.find("unit") != std::string::npos;
+        }))
+        notes += "<p>Thickness is in units of the material's own: absorption and scattering are "
+                 "given per such a unit.</p>\n";
+    return notes;
+}
+
 } // namespace
 
 std::string study_page(const Study& study, const StudyResult& result) {
@@ -137,7 +156,7 @@ std::string study_page(const Study& study, const StudyResult& result) {
         "<meta name=\"viewport\" content=\"width=device-width\">\n<title>{0}</title>\n"
         "<style>\n{1}</style></head>\n<body>\n<h1>{0}</h1>\n"
         "<p>Pick cells; drag along the wavelength, in a spectrum too, or along the excitation; "
-        "read values under the pointer.</p>\n"
+        "read values under the pointer.</p>\n{4}"
         "<noscript><p>This page needs scripts; table.csv and the folder cells hold the same "
         "results.</p></noscript>\n"
         "<section id=\"sheet\"></section>\n<section id=\"controls\"></section>\n"
@@ -145,7 +164,7 @@ std::string study_page(const Study& study, const StudyResult& result) {
         "<script type=\"application/json\" id=\"study-data\">{2}</script>\n"
         "<script>\n{3}</script>\n</body></html>\n",
         markup_escaped(study.title), study_style, script_safe(study_json(study, result)),
-        study_script);
+        study_script, sheet_notes(study, result));
 }
 
 } // namespace reradiant

@@ -70,7 +70,8 @@ function grids() {
 function labelsOf(sweeps, index) {
   const labels = [];
   for (const sweep of [...sweeps].reverse()) {
-    labels.unshift(sweep.label + ' ' + sweep.values[index % sweep.values.length]);
+    const value = sweep.values[index % sweep.values.length];
+    labels.unshift(sweep.label + ' ' + value.replaceAll(' ', '\u00a0')); // a unit stays beside it
     index = Math.floor(index / sweep.values.length);
   }
   return labels.join(', ');
@@ -197,7 +198,7 @@ function imagePart(panel, image) {
   const picture = make('img', { src: image.picture });
   picture.onload = () => redraw();
   let pixel = Math.floor(image.height / 2) * image.width + Math.floor(image.width / 2);
-  const spectrum = chart(panel, 'Radiance at the pixel, per nm', 'nm', () => [{ label: 'radiance',
+  const spectrum = chart(panel, 'Radiance at the pixel, W m^-2 sr^-1 per nm', 'nm', () => [{ label: 'radiance',
     from: image.from, step: image.step,
     values: Array.from({ length: image.count }, (_, b) => radiance(image, pixel, b)) }]);
   canvas.onpointermove = canvas.onpointerdown = (event) => {
@@ -276,7 +277,7 @@ function matrixPart(panel, m) {
 
 function colourTable(panel, colours_) {
   const table = make('table', {}, make('tr', {},
-    ...['light', 'in/out/phi', 'X', 'Y', 'Z', 'L*', 'a*', 'b*', 'yield'].map((t) => make('th', { textContent: t }))));
+    ...['light', 'in/out/phi, deg', 'X', 'Y', 'Z', 'L*', 'a*', 'b*', 'photons out / absorbed'].map((t) => make('th', { textContent: t }))));
   for (const c of colours_)
     table.append(make('tr', {}, ...[c.illuminant, c.theta_i_deg + '/' + c.theta_o_deg + '/' + c.phi_deg,
       ...c.XYZ.map(number), ...c.Lab.map(number), number(c.quantum_yield)].map((t) => make('td', { textContent: t }))));

@@ -72,6 +72,9 @@ void add_value(Sweep& sweep, const toml::node& node, const std::string& name, co
     SweepValue value;
     value.position = position_of(study.file.string(), node.source());
     value.label = name.empty() ? label_of(node) : name;
+    value.shown = value.label;
+    if (name.empty() && node.is_number() && !sweep.unit.empty())
+        value.shown += value.label == "1" && sweep.unit == "units" ? " unit" : " " + sweep.unit;
     value.boxed.push_back(node);
     std::error_code ignored;
     if (sweep.kind == SweepKind::Matrix && node.is_string()) {

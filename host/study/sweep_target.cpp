@@ -26,6 +26,26 @@ std::string element(int index) {
     return index < 0 ? every_element : std::to_string(index);
 }
 
+/// What numbers of a sweep are counted in. Thickness has a unit of the file's own, which its
+/// absorption is per.
+std::string unit_of(const Sweep& sweep) {
+    static const std::map<std::string, std::string> units{
+        {"angle", "deg"},
+        {"sigma", "rad"},
+        {"thickness", "units"},
+        {"absorption", "per unit of thickness"},
+        {"scattering_coefficient", "per unit of thickness"}};
+    if (sweep.kind == SweepKind::Concentration)
+        return "x the file's";
+    const std::string& key = sweep.path.back();
+    if (const auto known = units.find(key); known != units.end())
+        return known->second;
+    for (const auto& [ending, unit] : {std::pair{"_deg", "deg"}, {"_nm", "nm"}, {"_kelvin", "K"}})
+        if (key.ends_with(ending))
+            return unit;
+    return {};
+}
+
 /// Refuses the keys that choose among layers, lights or fluorophores where there is no choice.
 void refuse_choice(const TableReader& reader, const std::string& parameter) {
     const std::pair<const char*, bool> choices[] = {{"layer", layer_keys.contains(parameter)},
@@ -111,6 +131,7 @@ void resolve_target(const TableReader& reader, const Study& study, Sweep& sweep)
     else
         resolve_parameter(reader, study, sweep);
     sweep.label = reader.text_or("label", sweep.label);
+    sweep.unit = unit_of(sweep);
 }
 
 bool targets_collide(const Sweep& a, const Sweep& b) {

@@ -14,6 +14,26 @@ TEST(Progress, LineShowsTheShareAndSurvivesNonsense) {
     EXPECT_EQ(progress_line(std::numeric_limits<double>::quiet_NaN(), "", 4), "[----]   0 % ");
 }
 
+TEST(Progress, TimeLeftIsOfTheWorkThatThisRunDoes) {
+    // A quarter in ten seconds: three quarters take thirty.
+    EXPECT_NEAR(*seconds_left(10.0, 0.0, 0.25), 30.0, 1e-12);
+    // What an earlier run did took no time: from 0.5 to 0.75 in ten, the rest in ten more.
+    EXPECT_NEAR(*seconds_left(10.0, 0.5, 0.75), 10.0, 1e-12);
+    EXPECT_FALSE(seconds_left(1.0, 0.0, 0.5)) << "too early";
+    EXPECT_FALSE(seconds_left(10.0, 0.5, 0.501)) << "too little";
+    EXPECT_FALSE(seconds_left(10.0, 0.5, 0.5));
+    EXPECT_FALSE(seconds_left(10.0, 0.0, 1.0)) << "done";
+    EXPECT_FALSE(seconds_left(10.0, 0.0, std::numeric_limits<double>::quiet_NaN()));
+}
+
+TEST(Progress, DurationsAreInTheUnitThatOneSays) {
+    EXPECT_EQ(duration_text(0.2), "1 s");
+    EXPECT_EQ(duration_text(59.0), "59 s");
+    EXPECT_EQ(duration_text(59.9), "1 min");
+    EXPECT_EQ(duration_text(3569.0), "59 min");
+    EXPECT_EQ(duration_text(5400.0), "1.5 h");
+}
+
 TEST(Progress, NothingIsDrawnWhereThereIsNoTerminal) {
     ::testing::internal::CaptureStderr(); // a file, as in a pipe or a log
     {

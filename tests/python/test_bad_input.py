@@ -288,6 +288,14 @@ class BadInput(unittest.TestCase):
             self.refused(["nowhere/out.exr", "the folder nowhere does not exist"], write,
                          "nowhere/out.exr")
             self.refused(["/tmp", "is a folder"], write, "/tmp")
+        for words, write, name in (
+                (["x.png", "Image.write writes .exr", "Image.write_png makes a PNG"], image.write, "x.png"),
+                (["x.exr", "Image.write_png writes .png"], image.write_png, "x.exr"),
+                (["x.png", ".csv"], flat.write, "x.png"),
+                (["x.exr", "Measurement.write writes .csv"],
+                 rr.measure({"substrate": {"type": "lambert"}}, bands=(500, 520, 10)).write, "x.exr")):
+            self.refused(words, write, name)
+            self.assertFalse(pathlib.Path(name).exists())
         self.refused(["file", "empty"], image.write, "")
         self.refused(["file", "zero character"], image.write, "a\0b.exr")
 

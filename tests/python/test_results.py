@@ -18,7 +18,8 @@ class AgainstTheProgram(unittest.TestCase):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def program(self, *arguments):
-        subprocess.run([PROGRAM, *map(str, arguments), "--quiet"], check=True, cwd=self.folder)
+        subprocess.run([PROGRAM, *map(str, arguments), "--quiet"], check=True, cwd=self.folder,
+                       stdout=subprocess.DEVNULL)
 
     def test_render(self):
         scene = EXAMPLES / "fluorescent-smooth.toml"

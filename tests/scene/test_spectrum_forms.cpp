@@ -90,6 +90,20 @@ TEST_F(SpectrumForms, FilesAreReadBesideTheScene) {
     EXPECT_NEAR(read("{ file = \"s.csv\" }")(450.0), 2.0, 1e-14);
 }
 
+TEST_F(SpectrumForms, ScaleMultipliesWhatHasValuesOfItsOwn) {
+    write("s.csv", "nm,value\n400,1\n500,3\n");
+    write("lamp.spd", "400 10\n700 30\n");
+    EXPECT_NEAR(read("{ file = \"s.csv\", scale = 2 }")(450.0), 4.0, 1e-14);
+    // A lamp's file is no exception: no luminance takes the place of its values.
+    EXPECT_NEAR(read("{ file = \"lamp.spd\", scale = 0.5 }")(550.0), 10.0, 1e-13);
+    EXPECT_NEAR(read("{ nm = [400, 500], value = [1, 3], scale = 2 }")(450.0), 4.0, 1e-14);
+    const double once = read("{ rgb = [0.4, 0.3, 0.1] }")(650.0);
+    EXPECT_NEAR(read("{ rgb = [0.4, 0.3, 0.1], scale = 1.5 }")(650.0), 1.5 * once, 1e-14);
+    EXPECT_EQ(read("{ file = \"s.csv\", scale = 0 }")(450.0), 0.0);
+    EXPECT_EQ(error_column("{ file = \"s.csv\", scale = -1 }", "at least 0"), 30);
+    EXPECT_EQ(error_column("{ file = \"s.csv\", width_nm = 2 }", "unknown key"), 30);
+}
+
 TEST_F(SpectrumForms, WavelengthsOfAnotherUnitAreRefusedAtTheirKey) {
     EXPECT_EQ(error_column("{ nm = [4000, 7000], value = [0, 1] }", "cannot be in nm"), 14);
     EXPECT_EQ(error_column("{ nm = [1, 10], value = [0, 1] }", "cannot be in nm"), 14);

@@ -89,6 +89,27 @@ TEST_F(StudyPage, HoldsWhatWasRenderedAndMeasured) {
     EXPECT_NE(measured.at("polar")[0].get<std::string>().find("<svg"), std::string::npos);
 }
 
+TEST_F(StudyPage, SweptNumbersHaveTheirUnits) {
+    const std::string sweeps = "[[sweep]]\nparameter = \"thickness\"\nvalues = [1, 2]\n"
+                               "[[sweep]]\nparameter = \"roughness\"\nvalues = [5]\n"
+                               "[[sweep]]\nparameter = \"absorption\"\nvalues = [0.5]\n"
+                               "[[sweep]]\nparameter = \"angle\"\nvalues = [20]\n"
+                               "[[sweep]]\nparameter = \"illuminant\"\nvalues = [{ line_nm = "
+                               "405, width_nm = 2, scale = 9 }]\n";
+    const Study swept = load(head + sweeps);
+    CellResult cell;
+    cell.index = 1;
+    EXPECT_EQ(cell_name(swept, cell),
+              "thickness = 2 units, roughness = 5 deg, absorption = 0.5 per unit of thickness, "
+              "angle = 20 deg, illuminant = 405 nm");
+    const Study named = load(head + "[[sweep]]\nparameter = \"thickness\"\nvalues = [1, 2]\n"
+                                    "names = [\"thin\", \"thick\"]\n");
+    EXPECT_EQ(cell_name(named, cell), "thickness = thick");
+    const std::string page = study_page(study(), result());
+    EXPECT_EQ(embedded(page).at("sweeps")[0].at("values")[0], "1 unit");
+    EXPECT_NE(page.find("absorption and scattering are given per such a unit"), std::string::npos);
+}
+
 TEST_F(StudyPage, FailedCellIsShownAndItsTextCannotBecomeMarkup) {
     const std::string page = study_page(study(), result());
     EXPECT_EQ(page.find("</script><b>"), std::string::npos);

@@ -37,12 +37,12 @@ TEST_F(Classify, EveryLeafOfTheTreeIsReached) {
     };
     for (const Leaf& leaf : {
              Leaf{"RB", "smooth", "metallic, smooth", "d"},
-             Leaf{"RbS", "beta smooth", "metallic, smooth", "d"},
-             Leaf{"RbsO", "beta rough", "metallic, smooth", "f"},
-             Leaf{"Rbso", "beta rough", "metallic, rough", "gh"},
-             Leaf{"rS", "beta smooth", "coloured surface", "ab"},
-             Leaf{"rsO", "beta rough", "metallic, smooth", "f"},
-             Leaf{"rso", "beta rough", "metallic, rough", "gh"},
+             Leaf{"RbS", "smooth", "metallic, smooth", "d"},
+             Leaf{"RbsO", "rough", "metallic, smooth", "f"},
+             Leaf{"Rbso", "rough", "metallic, rough", "gh"},
+             Leaf{"rS", "smooth", "coloured surface", "ab"},
+             Leaf{"rsO", "rough", "metallic, smooth", "f"},
+             Leaf{"rso", "rough", "metallic, rough", "gh"},
          }) {
         const Json json = classified(leaf.answers);
         EXPECT_EQ(json.at("top"), leaf.top) << leaf.answers;

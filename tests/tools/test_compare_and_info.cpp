@@ -32,7 +32,8 @@ TEST_F(CompareAndInfo, CompareWritesTheKeysThatScriptsRead) {
     for (const char* key : {"relmse_srgb", "bias_stderr", "ciede2000"})
         EXPECT_TRUE(json.at(key).is_number()) << key;
     EXPECT_NE(result.output.find("relmse"), std::string::npos);
-    EXPECT_EQ(run("compare a.exr b.exr --quiet").output, "");
+    EXPECT_EQ(run("compare a.exr b.exr --quiet").output, result.output)
+        << "what one asked for is no noise";
 }
 
 TEST_F(CompareAndInfo, CompareExitsWithThreeOverTheLimit) {
@@ -74,6 +75,7 @@ TEST_F(CompareAndInfo, InfoSaysWhatEachKindOfFileHolds) {
         const ProgramResult result = run("info " + file + " --json info.json");
         EXPECT_EQ(result.exit_code, 0) << result.errors;
         EXPECT_NE(result.output.find("kind:"), std::string::npos) << result.output;
+        EXPECT_EQ(run("info " + file + " --quiet").output, result.output);
         return Json::parse(file_bytes(folder / "info.json"));
     };
     const Json image = info("a.exr");
@@ -87,6 +89,28 @@ TEST_F(CompareAndInfo, InfoSaysWhatEachKindOfFileHolds) {
     EXPECT_EQ(matrix.at("kind"), "re-radiation matrix");
     EXPECT_NEAR(matrix.at("largest_radiant_column_sum").get<double>(), 0.5, 1e-12);
     EXPECT_EQ(matrix.at("fluorescent"), true);
+}
+
+TEST_F(CompareAndInfo, QuietSilencesReportsOfWhatWasWrittenAndNotResults) {
+    put("scene.toml", small_scene());
+    for (const auto& [command, word] : {std::pair{"validate scene.toml", "valid\n"},
+                                        {"devices", "0: "},
+                                        {"check --only film --samples 1000", "passed"},
+                                        {"classify --class a", "start from: "}}) {
+        const ProgramResult quiet = run(std::string(command) + " --quiet");
+        EXPECT_EQ(quiet.exit_code, 0) << command << "\n" << quiet.errors;
+        EXPECT_NE(quiet.output.find(word), std::string::npos) << command << "\n" << quiet.output;
+        EXPECT_EQ(quiet.errors, "") << command;
+    }
+    put("flat.toml", "[material]\n[material.substrate]\ntype = \"lambert\"\n");
+    for (const char* command : {"measure flat.toml -o m.csv", "render scene.toml -o o.exr --spp 1",
+                                "classify --class a -o start.toml"}) {
+        const ProgramResult quiet = run(std::string(command) + " --quiet");
+        EXPECT_EQ(quiet.exit_code, 0) << quiet.errors;
+        EXPECT_EQ(quiet.output.find("written"), std::string::npos) << quiet.output;
+        EXPECT_EQ(quiet.output.find("o.exr"), std::string::npos) << quiet.output;
+        EXPECT_EQ(quiet.output.find("m.csv"), std::string::npos) << quiet.output;
+    }
 }
 
 TEST_F(CompareAndInfo, InfoRefusesWhatItCannotRead) {

@@ -121,6 +121,32 @@ TEST_F(Outputs, AnEndingOfAnotherFormatIsRefused) {
         expect_failure(2, with_name("fit ORANGE -o NAME", name), std::string(name) + ": ");
 }
 
+TEST_F(Outputs, TheOptionThatWasMeantIsNamed) {
+    const std::pair<const char*, const char*> meant[] = {
+        {"render scene.toml -o x.png", "x.png: -o writes .exr, and the name ends in .png; use "
+                                       "--png x.png for that, and name a .exr here"},
+        {"render scene.toml -o x.exr --png y.EXR", "use -o y.EXR for that"},
+        {"render scene.toml -o x.json", "use --json x.json for that"},
+        {"measure material.toml -o x.exr", "x.exr: -o writes .csv"},
+        {"measure material.toml -o x.txt", "x.txt: -o writes .csv"},
+        {"merge a.exr -o x.png", "use --png x.png for that"},
+        {"fit ORANGE -o x.html", "use --report x.html for that"},
+        {"fit ORANGE -o x.toml", "use --model-file x.toml for that"},
+        {"fit ORANGE -o x.csv --report x.csv", "use -o x.csv for that"},
+        {"colour ORANGE --json x.svg", "use --plot x.svg for that"},
+        {"synth EXAMPLES/synth-orange.toml -o x.exr", "use --truth x.exr for that"},
+        {"study study.toml -o x.png", "x.png: -o names a folder here"},
+        {"converge scene.toml -o errors.csv", "errors.csv: -o names a folder here"},
+        {"check --save x.csv", "x.csv: --save writes .json"},
+    };
+    for (const auto& [command, message] : meant)
+        expect_failure(2, with_name(command, ""), message);
+    // What is behind the last dot need not be a format.
+    EXPECT_EQ(run("measure material.toml -o part.001").exit_code, 0);
+    fs::create_directory(folder / "old.png");
+    EXPECT_EQ(run("study study.toml -o old.png --quiet").exit_code, 0) << "it is a folder";
+}
+
 TEST_F(Outputs, OneFileForTwoOutputsOrForAnInputIsRefused) {
     link("ok.exr", "also.png");
     fs::create_directory(folder / "sub");

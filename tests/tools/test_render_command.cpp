@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace reradiant {
 
 namespace {
@@ -27,6 +29,26 @@ TEST_F(RenderCommand, WritesImagePictureAndStatistics) {
           "bands", "model", "wavelengths", "features", "left_out", "peak_memory_bytes"})
         EXPECT_TRUE(json.contains(key)) << key;
     EXPECT_EQ(folder.file_count(), 4u) << "scene, image, picture and statistics";
+}
+
+TEST_F(RenderCommand, EndsWithThreeLinesAndSaysTheRestWhenAsked) {
+    put("scene.toml", small_scene());
+    const std::string command =
+        "render scene.toml -o out.exr --png out.png --spp 4 --json out.json";
+    const ProgramResult brief = run(command), verbose = run(command + " --verbose");
+    ASSERT_EQ(brief.exit_code, 0) << brief.errors;
+    EXPECT_EQ(std::count(brief.output.begin(), brief.output.end(), '\n'), 3) << brief.output;
+    for (const char* word :
+         {"out.exr: 8 x 6 pixels", "4 samples a pixel", "estimated relMSE", " s: set-up "})
+        EXPECT_NE(brief.output.find(word), std::string::npos) << brief.output;
+    const auto json = nlohmann::json::parse(file_bytes(folder / "out.json"));
+    ASSERT_FALSE(json.at("notes").empty());
+    ASSERT_FALSE(json.at("left_out").empty());
+    for (const char* key : {"notes", "left_out"})
+        for (const auto& text : json.at(key)) {
+            EXPECT_NE(verbose.output.find(text.get<std::string>()), std::string::npos) << text;
+            EXPECT_EQ(brief.output.find(text.get<std::string>()), std::string::npos) << text;
+        }
 }
 
 TEST_F(RenderCommand, SameSeedGivesTheSameImageWhateverTheThreads) {

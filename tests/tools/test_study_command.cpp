@@ -40,6 +40,26 @@ TEST_F(StudyCommand, RendersMeasuresAndShowsEveryCell) {
     EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5) << table;
 }
 
+TEST_F(StudyCommand, OneExposureOfTheSheetShowsTheBodies) {
+    // Beneath radiance 0.5 bodies of 0.2 and 0.8 are well seen, beneath 50 they are lost.
+    put("scene.toml", replaced(small_scene(), "radiance = 1.0", "radiance = 0.5"));
+    ASSERT_EQ(run("study study.toml -o as-it-is --json out.json").exit_code, 0);
+    EXPECT_EQ(results().at("exposure_ev"), 0.0);
+    put("scene.toml", replaced(small_scene(), "radiance = 1.0", "radiance = 50.0"));
+    ASSERT_EQ(run("study study.toml -o bright --json out.json").exit_code, 0);
+    // Equal energy has 1.205 in red: log2(0.6 / (0.8 x 50 x 1.205)) = -6.33, kept to one digit.
+    EXPECT_NEAR(results().at("exposure_ev").get<double>(), -6.3, 1e-9);
+    const std::string page = file_bytes(folder / "bright/index.html");
+    EXPECT_NE(page.find("same exposure, -6"), std::string::npos);
+    put("study.toml",
+        replaced(file_bytes(folder / "study.toml"), "spp = 2", "spp = 2\nexposure_ev = -3"));
+    const std::string chosen = file_bytes(folder / "bright/cells/0000/image.png");
+    ASSERT_EQ(run("study study.toml -o bright --json out.json").exit_code, 0);
+    EXPECT_EQ(results().at("exposure_ev"), -3.0);
+    EXPECT_EQ(results().at("results")[0].at("kept"), true) << "light is the same";
+    EXPECT_NE(file_bytes(folder / "bright/cells/0000/image.png"), chosen);
+}
+
 TEST_F(StudyCommand, DoneCellsAreKeptAndChangedOnesAreDoneAgain) {
     ASSERT_EQ(run("study study.toml -o results").exit_code, 0);
     std::filesystem::remove(folder / "results/cells/0001/cell.json");

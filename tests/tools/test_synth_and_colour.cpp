@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace reradiant;
@@ -81,12 +82,43 @@ TEST_F(SynthAndColour, LampsWithLinesAreSummedOverNanometresAndSaySo) {
     expect_failure(2, command + "--plain-sums --e308", "--plain-sums");
 }
 
-TEST_F(SynthAndColour, QuietSaysNothing) {
-    const ProgramResult seen =
-        run("colour " + matrices + "synthetic-orange.csv --illuminant FL2 --quiet");
-    EXPECT_EQ(seen.exit_code, 0);
-    EXPECT_TRUE(seen.output.empty()) << seen.output;
-    EXPECT_TRUE(seen.errors.empty()) << seen.errors;
+TEST_F(SynthAndColour, QuietSilencesWarningsAndNotTheColour) {
+    const std::string command = "colour " + matrices + "synthetic-orange.csv --illuminant D65,FL2";
+    const ProgramResult seen = run(command), quiet = run(command + " --quiet");
+    EXPECT_EQ(quiet.exit_code, 0);
+    EXPECT_NE(quiet.output.find("  XYZ  "), std::string::npos) << quiet.output;
+    EXPECT_EQ(quiet.output, seen.output);
+    EXPECT_TRUE(quiet.errors.empty()) << quiet.errors;
+}
+
+TEST_F(SynthAndColour, TheTableOfWavelengthsIsPrintedWhenAskedFor) {
+    const std::string command = "colour " + matrices + "synthetic-orange.csv";
+    const std::string plain = run(command).output, table = run(command + " --table").output;
+    EXPECT_EQ(plain.find("beta_R"), std::string::npos) << plain;
+    EXPECT_TRUE(table.starts_with(plain)) << table;
+    // Its head, and the matrix's 49 emission bands.
+    const std::string rest = table.substr(plain.size());
+    EXPECT_EQ(std::count(rest.begin(), rest.end(), '\n'), 50) << rest;
+}
+
+TEST_F(SynthAndColour, ThePlotShowsBothMatrices) {
+    const std::string orange = matrices + "synthetic-orange.csv";
+    put("other.csv", file_bytes(orange));
+    ASSERT_EQ(run("colour " + orange + " --plot one.svg").exit_code, 0);
+    ASSERT_EQ(run("colour " + orange + " --against other.csv --plot two.svg").exit_code, 0);
+    const std::string one = file_bytes(folder / "one.svg"), two = file_bytes(folder / "two.svg");
+    const auto curves = [](const std::string& svg) {
+        std::size_t count = 0;
+        for (std::size_t at = 0; (at = svg.find("stroke-width=\"1.8\"", at)) != std::string::npos;
+             ++at)
+            ++count;
+        return count;
+    };
+    EXPECT_EQ(one.find("other.csv"), std::string::npos);
+    for (const char* name :
+         {"D65 total, synthetic-orange.csv", "D65 total, other.csv", "reflected, other.csv"})
+        EXPECT_NE(two.find(name), std::string::npos) << name;
+    EXPECT_EQ(curves(two), 2 * curves(one));
 }
 
 TEST_F(SynthAndColour, NoPolygonThatPassesIsExitThree) {

@@ -4,6 +4,7 @@
 #include "host/fit/fit_summary.h"
 #include "host/fit/synth.h"
 #include "host/fit/synth_recipe.h"
+#include "host/output_ending.h"
 #include "host/output_file.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
@@ -115,6 +116,7 @@ void bind_data(py::module_& module) {
         .def("blocks", &blocks_of)
         .def("write", [](const BispectralData& d, const std::string& file) {
             check_output_file(file);
+            require_output_ending(file, {".csv"}, "BispectralData.write");
             write_bispectral_data(file, d);
         });
 }
@@ -143,6 +145,7 @@ void bind_fit(py::module_& module) {
         .def("summary", [](const Fit& fit) { return python_value(fit_summary(fit.result)); })
         .def("write_report", [](const Fit& fit, const std::string& file) {
             check_output_file(file);
+            check_output_ending(file, {".html"}, "Fit.write_report");
             write_fit_report(file, fit.data, fit.result);
         });
     module.def("fit", &fit_data);

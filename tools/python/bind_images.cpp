@@ -1,4 +1,5 @@
 #include "host/film/spectral_image.h"
+#include "host/output_ending.h"
 #include "host/output_file.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
@@ -55,6 +56,7 @@ std::size_t write_png_file(const SpectralImage& image, const std::string& file,
                            const std::string& view_name, double exposure) {
     const DisplayOptions options = display_options(ocio, display, view_name, exposure);
     check_output_file(file);
+    check_output_ending(file, {".png"}, "Image.write_png", "Image.write makes an EXR");
     return interruptible([&](StopFlag) { return write_display_png(file, image, options); });
 }
 
@@ -96,6 +98,7 @@ void bind_images(py::module_& module) {
         .def("write",
              [](const SpectralImage& image, const std::string& file, double exposure) {
                  check_output_file(file);
+                 check_output_ending(file, {".exr"}, "Image.write", "Image.write_png makes a PNG");
                  run_interruptible([&](StopFlag) { write_spectral_exr(file, image, exposure); });
              })
         .def("write_png", &write_png_file)

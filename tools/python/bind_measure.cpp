@@ -1,4 +1,5 @@
 #include "host/measure/measure.h"
+#include "host/output_ending.h"
 #include "host/output_file.h"
 #include "host/scene/scene_table.h"
 #include "tools/python/bindings.h"
@@ -97,6 +98,7 @@ void bind_measure(py::module_& module) {
              })
         .def("write", [](const Measurement& m, const std::string& file) {
             check_output_file(file);
+            check_output_ending(file, {".csv"}, "Measurement.write");
             write_measurement(file, m);
         });
     module.def("measure", &measure_argument);

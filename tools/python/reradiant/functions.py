@@ -134,6 +134,8 @@ def measure(material: Any = None, *, preset: Optional[str] = None, theta_i: Any 
     Returns
     -------
     Measurement
+        Its `matrix()` is of the light that reached the substrate; `matrix(specular=True)` is the
+        gloss on top of it.
 
     Examples
     --------

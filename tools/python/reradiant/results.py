@@ -21,7 +21,8 @@ class Measurement:
     stderr : float64 (rows,)
         Standard error of `value` (0 for closed forms).
     specular : bool (rows,)
-        True for light that never reached the substrate.
+        True for light that never reached the substrate, the gloss. `matrix` leaves it out unless
+        it is asked for.
     """
 
     theta_i_deg: np.ndarray
@@ -55,7 +56,12 @@ class Measurement:
     def matrix(self, theta_i: float = 0.0, theta_o: float = 0.0, phi: float = 0.0,
                specular: bool = False) -> np.ndarray:
         """(emission, excitation) values of one pair of directions; theta_o and phi do not count for
-        hemispherical ones. InputError when it was not measured."""
+        hemispherical ones. InputError when it was not measured.
+
+        The gloss is left out by default: these are the values of light that reached the substrate.
+        With specular=True they are those of light that never did, which the surface or a slab sent
+        back; the sum of the two is all light. (In directional measurements the mirror reflection
+        of smooth surfaces is in neither, which `notes` says.)"""
         rows = (self.theta_i_deg == theta_i) & (self.specular == specular)
         if not self._measurement.hemispherical:
             rows &= (self.theta_o_deg == theta_o) & (self.phi_deg == phi)
@@ -179,7 +185,11 @@ class Fit:
 
     @property
     def summary(self) -> Dict[str, Any]:
-        """What `reradiant fit --json` says: rank, relative_rmse, quantum_yield, converged, ..."""
+        """What `reradiant fit --json` says: rank, relative_rmse, quantum_yield, converged, ...
+
+        quantum_yield is a list of {value, low, high}, one a term: photons emitted over photons that
+        the sample absorbs, by its dye or by anything else. A dye's own yield, over the photons that
+        the dye absorbs, is as high or higher."""
         return self._fit.summary()
 
     def write_report(self, file: Any) -> None:
