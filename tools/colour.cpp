@@ -4,6 +4,7 @@
 #include "host/report/svg.h"
 #include "host/spectral/colour_report.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/matrix_warnings.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
 
@@ -80,8 +81,10 @@ std::vector<SeenPair> report_colours(const ColourOptions& options,
     const ColourSum sum = options.sum();
     const std::vector<ColourPolygon> polygons = read_polygons(options);
     std::optional<ReradiationMatrix> other;
-    if (!options.against.empty())
+    if (!options.against.empty()) {
         other = read_reradiation(options.against);
+        warn_of_matrix(options.against.string(), *other);
+    }
     std::vector<SeenPair> seen;
     for (const std::string& name : options.illuminants) {
         ColourReport report = report_of_file(options.matrix, matrix, name, sum);
@@ -196,6 +199,7 @@ int run_colour(ColourOptions options, const CommonOptions& common) {
     check_outputs(common, {{"--plot", options.plot, {".svg"}}},
                   {options.matrix, options.against, options.polygons});
     const ReradiationMatrix matrix = read_reradiation(options.matrix);
+    warn_of_matrix(options.matrix.string(), matrix);
     const std::vector<SeenPair> seen = report_colours(options, matrix);
     Json json = Json::object();
     for (const SeenPair& pair : seen) {

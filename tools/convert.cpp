@@ -8,6 +8,7 @@
 #include "host/scene/scene_table.h"
 #include "host/scene/toml_document.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/matrix_warnings.h"
 #include "host/spectral/spectrum_formats.h"
 #include "tools/command.h"
 #include "tools/file_kind.h"
@@ -25,17 +26,27 @@ namespace {
 
 struct ConvertOptions {
     std::filesystem::path in, out;
-    std::string quantity, orientation;
+    TableWords words; ///< of IN
+    std::string out_rows, out_quantity;
 };
 
 bool is_matrix_ending(const std::string& ending) {
     return ending == ".csv" || ending == ".bfc" || ending == ".exr";
 }
 
-void refuse_form_options(const ConvertOptions& options, const char* why) {
-    if (!options.quantity.empty() || !options.orientation.empty())
+void refuse_form_options(const ConvertOptions& options, const std::string& what) {
+    if (table_form(options.words) != TableForm{})
+        throw_input_error({options.in.string()},
+                          fmt::format("--rows, --quantity, --scale, --decimal, --kind and "
+                                      "--anti-stokes are of tables of re-radiation, not of {}",
+                                      what),
+                          "leave them out");
+}
+
+void refuse_out_options(const ConvertOptions& options) {
+    if (!options.out_rows.empty() || !options.out_quantity.empty())
         throw_input_error({options.out.string()},
-                          fmt::format("--quantity and --orientation {}", why),
+                          "--out-rows and --out-quantity are of a re-radiation matrix as CSV",
                           "leave them out, or write a .csv of a re-radiation matrix");
 }
 
@@ -65,6 +76,18 @@ void write_if_it_loads(const ConvertOptions& options, const FileAction& write,
     write(options.out);
 }
 
+/// A measurement may keep its gaps where a CSV is written.
+ReradiationMatrix read_matrix(const ConvertOptions& options, Gaps gaps) {
+    const TableForm form = table_form(options.words);
+    if (gaps == Gaps::Refused)
+        return read_reradiation(options.in, gaps, form);
+    ReradiationMatrix matrix = read_reradiation(options.in, gaps, form);
+    const bool has_gaps = !matrix.values.allFinite();
+    if (has_gaps && matrix.kind == MatrixKind::Model)
+        return read_reradiation(options.in, Gaps::Refused, form); // says where
+    return matrix;
+}
+
 void convert_matrix(const ConvertOptions& options) {
     const std::string ending = lower_case_ending(options.out);
     if (!is_matrix_ending(ending))
@@ -72,23 +95,26 @@ void convert_matrix(const ConvertOptions& options) {
                           fmt::format("a re-radiation matrix does not fit into '{}'", ending),
                           "write .csv, .bfc or .exr");
     if (ending != ".csv")
-        refuse_form_options(options, "are for CSV only");
-    const ReradiationMatrix matrix = read_reradiation(options.in);
+        refuse_out_options(options);
+    const Gaps gaps = ending == ".csv" ? Gaps::BecomeNan : Gaps::Refused;
+    const ReradiationMatrix matrix = read_matrix(options, gaps);
+    warn_of_matrix(options.in.string(), matrix);
     MatrixCsvForm form;
-    if (options.quantity == "density-per-nm")
-        form.quantity = MatrixQuantity::DensityPerNm;
-    form.rows_are_emission = options.orientation != "rows-excitation";
+    if (!options.out_quantity.empty())
+        form.quantity = matrix_quantity(options.out_quantity);
+    form.rows_are_emission = options.out_rows.empty() || rows_are_emission(options.out_rows);
     write_if_it_loads(
         options,
         [&](const auto& file) {
             ending == ".csv" ? write_reradiation_csv(file, matrix, form)
                              : write_reradiation(file, matrix);
         },
-        [](const auto& file) { read_reradiation(file); });
+        [&](const auto& file) { read_reradiation(file, gaps); });
 }
 
 void convert_spectrum(const ConvertOptions& options) {
-    refuse_form_options(options, "are for re-radiation matrices only");
+    refuse_form_options(options, "spectra");
+    refuse_out_options(options);
     if (const std::string ending = lower_case_ending(options.out);
         ending != ".csv" && ending != ".spd")
         throw_input_error({options.out.string()},
@@ -115,7 +141,8 @@ void check_scene(const ConvertOptions& options, const std::string& text) {
 
 /// A scene of Mitsuba 3 as one of this program; files keep their places.
 void convert_scene(const ConvertOptions& options) {
-    refuse_form_options(options, "are for re-radiation matrices only");
+    refuse_form_options(options, "scenes");
+    refuse_out_options(options);
     if (lower_case_ending(options.out) != ".toml")
         throw_input_error({options.out.string()}, "a scene is written as .toml", "name a .toml");
     std::ostringstream text;
@@ -133,7 +160,8 @@ const char* convert(const ConvertOptions& options) {
         convert_scene(options);
         return "scene";
     }
-    if (holds_reradiation(options.in)) {
+    if (!options.words.rows.empty() || !options.words.quantity.empty() ||
+        holds_reradiation(options.in)) {
         convert_matrix(options);
         return "re-radiation matrix";
     }
@@ -153,6 +181,48 @@ int run_convert(const ConvertOptions& options, const CommonOptions& common) {
 
 } // namespace
 
+/// What tells a plain table of numbers.
+void add_table_options(CLI::App& command, ConvertOptions& options) {
+    const char* const group = "A table that does not say what its numbers are";
+    const auto choice = [](std::vector<std::string> words) {
+        return CLI::IsMember(std::move(words));
+    };
+    command
+        .add_option("--rows", options.words.rows,
+                    "what a row of IN belongs to: emission (excitation goes across) or excitation")
+        ->check(choice({"emission", "excitation", "rows-emission", "rows-excitation"}))
+        ->group(group);
+    command
+        .add_option("--quantity", options.words.quantity,
+                    "values of IN: per-band (their sum over the bands of excitation counts) or "
+                    "density (per nm of excitation)")
+        ->check(choice({"per-band", "density", "density-per-nm"}))
+        ->group(group);
+    command
+        .add_option("--scale", options.words.scale,
+                    "percent, permille or the factor that makes a white reflect 1")
+        ->group(group);
+    command
+        .add_option("--decimal", options.words.decimal,
+                    "comma or point; told by itself where cells are parted by semicolons or tabs")
+        ->check(choice({"comma", "point"}))
+        ->group(group);
+    command
+        .add_option("--kind", options.words.kind,
+                    "measured (holds noise, may have gaps) or model (the default)")
+        ->check(choice({"measured", "model"}))
+        ->group(group);
+    command
+        .add_flag("--anti-stokes", options.words.anti_stokes,
+                  "emission below its excitation is real, not noise")
+        ->group(group);
+    command.add_option("--out-rows", options.out_rows, "of a matrix written as CSV: emission")
+        ->check(choice({"emission", "excitation", "rows-emission", "rows-excitation"}));
+    command
+        .add_option("--out-quantity", options.out_quantity, "of a matrix written as CSV: per-band")
+        ->check(choice({"per-band", "density", "density-per-nm"}));
+}
+
 void add_convert_command(CLI::App& program, CommandContext& context) {
     const auto options = std::make_shared<ConvertOptions>();
     CLI::App* const command =
@@ -165,12 +235,11 @@ void add_convert_command(CLI::App& program, CommandContext& context) {
         ->required();
     command->add_option("OUT", options->out, "file to write; its ending says the format")
         ->required();
-    command->add_option("--quantity", options->quantity, "of a matrix written as CSV")
-        ->check(CLI::IsMember({"per-band", "density-per-nm"}));
-    command->add_option("--orientation", options->orientation, "of a matrix written as CSV")
-        ->check(CLI::IsMember({"rows-emission", "rows-excitation"}));
+    add_table_options(*command, *options);
     command->footer("Examples:\n"
                     "  reradiant convert paint.bfc paint.csv\n"
+                    "  reradiant convert export.csv paint.csv --rows emission --quantity per-band "
+                    "--scale percent --kind measured\n"
                     "  reradiant convert scene.xml scene.toml");
     command->callback(
         [options, &context] { context.exit_code = run_convert(*options, context.common); });

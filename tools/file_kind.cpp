@@ -3,8 +3,11 @@
 #include "host/error.h"
 #include "host/film/exr_channels.h"
 #include "host/regular_file.h"
+#include "host/scene/scene_table.h"
+#include "host/spectral/csv_lines.h"
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/text_format.h"
+#include "host/spectral/text_reader.h"
 
 #include <algorithm>
 #include <string>
@@ -24,21 +27,43 @@ std::ifstream open(const fs::path& file) {
     return stream;
 }
 
-/// True when some line begins with the text, blanks aside.
-bool has_line(const fs::path& file, const std::string& text) {
-    std::ifstream stream = open(file);
-    for (std::string line; std::getline(stream, line);) {
-        const std::size_t first = line.find_first_not_of(" \t");
-        if (first != std::string::npos && line.compare(first, text.size(), text) == 0)
-            return true;
-    }
-    return false;
-}
-
 bool is_bispectral(const fs::path& file) {
     const std::vector<std::string> names = exr_channel_names(file);
     return std::any_of(names.begin(), names.end(),
                        [](const std::string& name) { return name.starts_with("T."); });
+}
+
+FileKind kind_of_toml(const fs::path& file) {
+    const toml::table table = read_scene_table(file);
+    if (table.contains("study") || table.contains("sweep"))
+        return FileKind::Study;
+    if (table.contains("fluorophore") || table.contains("emission_nm"))
+        return FileKind::Recipe;
+    const toml::table* const material = table["material"].as_table();
+    if (material == nullptr || table.contains("film"))
+        return FileKind::Scene;
+    const bool is_whole = !material->contains("layer") || material->contains("substrate");
+    return is_whole ? FileKind::Material : FileKind::Layers;
+}
+
+FileKind kind_of_table(const fs::path& file) {
+    TextReader reader(file);
+    for (std::string_view line; reader.next_line(line);) {
+        if (!is_line_of_cells(line))
+            continue;
+        const std::vector<TextToken> cells = reader.split_cells(line);
+        const auto is = [&](std::size_t k, std::string_view name) {
+            return k < cells.size() && lower_case(cells[k].text) == name;
+        };
+        if (is(0, "theta_i_deg"))
+            return FileKind::Measurement;
+        if (is(0, "name") && is(1, "illuminant"))
+            return FileKind::Polygons;
+        if (cells.size() == 3 && is(1, "n") && is(2, "k"))
+            return FileKind::ComplexIndex;
+        break;
+    }
+    return holds_reradiation(file) ? FileKind::Matrix : FileKind::Spectrum;
 }
 
 } // namespace
@@ -47,21 +72,21 @@ FileKind file_kind(const fs::path& file) {
     open(file);
     const std::string ending = lower_case_ending(file);
     if (ending == ".toml")
-        return has_line(file, "[material]") && !has_line(file, "[film]") ? FileKind::Material
-                                                                         : FileKind::Scene;
+        return kind_of_toml(file);
     if (ending == ".exr")
         return is_bispectral(file) ? FileKind::Matrix : FileKind::Image;
+    if (ending == ".png")
+        return FileKind::Image;
     if (ending == ".bfc")
         return FileKind::Matrix;
+    if (ending == ".ply" || ending == ".obj")
+        return FileKind::Mesh;
     const TextFormat format = text_format_of(file);
     if (format == TextFormat::JcampDx || format == TextFormat::Cgats || format == TextFormat::Tm27)
         return FileKind::Spectrum;
     if (ending == ".xml")
         return FileKind::Scene;
-    if (ending == ".csv" || ending == ".spd")
-        return holds_reradiation(file) ? FileKind::Matrix : FileKind::Spectrum;
-    throw_input_error({file.string()}, "has no ending that is known",
-                      "endings are .toml, .xml, .csv, .exr, .bfc, .spd");
+    return format == TextFormat::Table ? kind_of_table(file) : FileKind::Spectrum;
 }
 
 } // namespace reradiant

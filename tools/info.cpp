@@ -3,8 +3,8 @@
 #include "host/film/spectral_image.h"
 #include "host/report/json_file.h"
 #include "host/scene/scene.h"
-#include "host/spectral/csv_lines.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/matrix_warnings.h"
 #include "host/spectral/scatter_warnings.h"
 #include "host/spectral/spectrum_formats.h"
 #include "tools/command.h"
@@ -69,6 +69,7 @@ Json describe_exr(const fs::path& file) {
 
 Json describe_matrix(const fs::path& file) {
     const ReradiationMatrix matrix = read_reradiation(file);
+    warn_of_matrix(file.string(), matrix);
     const ColumnBalance balance = column_balance(matrix);
     const auto highest = [](const std::vector<double>& sums) {
         return sums.empty() ? 0.0 : *std::max_element(sums.begin(), sums.end());
@@ -88,20 +89,6 @@ Json describe_matrix(const fs::path& file) {
     return result;
 }
 
-/// True for the tables nm,n,k that metals are read from.
-bool holds_complex_index(const fs::path& file) {
-    if (text_format_of(file) != TextFormat::Table)
-        return false;
-    TextReader reader(file);
-    for (std::string_view line; reader.next_line(line);)
-        if (is_line_of_cells(line)) {
-            const std::vector<TextToken> cells = reader.split_cells(line);
-            return cells.size() == 3 && lower_case(cells[1].text) == "n" &&
-                   lower_case(cells[2].text) == "k";
-        }
-    return false;
-}
-
 Json describe_complex_index(const fs::path& file) {
     const NumberTable table = read_number_table(file, 3);
     const auto range = [&](std::size_t column) {
@@ -117,8 +104,6 @@ Json describe_complex_index(const fs::path& file) {
 }
 
 Json describe_spectrum(const fs::path& file) {
-    if (holds_complex_index(file))
-        return describe_complex_index(file);
     const NumberTable table = read_spectrum_table(file);
     const auto [low, high] = std::minmax_element(table.columns[1].begin(), table.columns[1].end());
     const double from = table.columns[0].front(), to = table.columns[0].back();
@@ -158,10 +143,22 @@ Json describe(const fs::path& file) {
         return describe_matrix(file);
     case FileKind::Spectrum:
         return describe_spectrum(file);
+    case FileKind::ComplexIndex:
+        return describe_complex_index(file);
     case FileKind::Image:
-        return describe_exr(file);
+        if (lower_case_ending(file) == ".exr")
+            return describe_exr(file);
+        break;
+    case FileKind::Layers:
+    case FileKind::Recipe:
+    case FileKind::Study:
+    case FileKind::Measurement:
+    case FileKind::Polygons:
+    case FileKind::Mesh:
+        break;
     }
-    throw_input_error({file.string()}, "is of an unknown kind");
+    throw_input_error({file.string()}, "is no file that is described here",
+                      "`reradiant validate` checks it and says what it holds");
 }
 
 /// One line a value, groups indented.

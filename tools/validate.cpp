@@ -1,10 +1,19 @@
 #include "host/error.h"
+#include "host/film/exr_channels.h"
+#include "host/film/spectral_image.h"
+#include "host/fit/bispectral_data.h"
+#include "host/fit/synth.h"
 #include "host/geometry/geometry.h"
 #include "host/report/json_file.h"
+#include "host/scene/image_io.h"
 #include "host/scene/mesh_io.h"
 #include "host/scene/scene.h"
+#include "host/scene/stack_file.h"
+#include "host/spectral/colour_polygons.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/matrix_warnings.h"
 #include "host/spectral/spectrum_formats.h"
+#include "host/study/study_file.h"
 #include "tools/command.h"
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
@@ -32,9 +41,27 @@ std::string grid_text(const WavelengthGrid& grid) {
     return fmt::format("{} by {} nm", range_text(grid.from_nm, grid.to_nm()), grid.step_nm);
 }
 
+/// A measurement with gaps, which only a fit takes.
+Json validate_gaps(const fs::path& file, const ReradiationMatrix& matrix) {
+    warn_of_matrix(file.string(), matrix);
+    const auto gaps = (matrix.values.array() != matrix.values.array()).count();
+    return {{"kind", "re-radiation matrix"},
+            {"claims", "measured"},
+            {"emission", grid_text(matrix.emission)},
+            {"excitation", grid_text(matrix.excitation)},
+            {"gaps", gaps},
+            {"use", "`fit` takes it; scenes and colours need every entry"},
+            {"warnings", matrix_warnings(matrix)}};
+}
+
 /// Column sums, and what rendering would change in the matrix (warnings go to the log).
 Json validate_matrix(const fs::path& file) {
-    ReradiationMatrix matrix = read_reradiation(file);
+    ReradiationMatrix matrix = read_reradiation(file, Gaps::BecomeNan);
+    if (!matrix.values.allFinite()) {
+        if (matrix.kind == MatrixKind::Measured)
+            return validate_gaps(file, matrix);
+        read_reradiation(file); // says where
+    }
     const ColumnBalance balance = column_balance(matrix);
     const auto largest = [](const std::vector<double>& sums) {
         return *std::max_element(sums.begin(), sums.end());
@@ -102,23 +129,84 @@ Json validate_mesh(const fs::path& file) {
             {"texture_coordinates", !mesh.texture_coordinates.empty()}};
 }
 
+Json validate_recipe(const fs::path& file) {
+    const SynthRecipe recipe = read_synth_recipe(file);
+    return {{"kind", "recipe of synth"},
+            {"emission", grid_text(recipe.emission)},
+            {"excitation", grid_text(recipe.excitation)},
+            {"fluorophores", recipe.fluorophores.size()},
+            {"layers", recipe.stack.layers.size()},
+            {"geometries", recipe.geometries.size()}};
+}
+
+Json validate_study(const fs::path& file) {
+    const Study study = load_study(file);
+    return {{"kind", "study"},
+            {"title", study.title},
+            {"sweeps", study.sweeps.size()},
+            {"cells", study.cell_count()}};
+}
+
+Json validate_measurement(const fs::path& file) {
+    const BispectralData data = read_bispectral_data(file);
+    return {{"kind", "measurement"},
+            {"emission", grid_text(data.emission)},
+            {"excitation", grid_text(data.excitation)},
+            {"geometries", data.blocks.size()},
+            {"entries", data.measured_count()}};
+}
+
+Json validate_complex_index(const fs::path& file) {
+    const NumberTable table = read_number_table(file, 3);
+    return {{"kind", "complex index of refraction"},
+            {"range", range_text(table.columns[0].front(), table.columns[0].back())}};
+}
+
+/// A spectral EXR, which is compared and merged, or the colours of a texture or an environment.
+Json validate_image(const fs::path& file) {
+    const bool is_exr = lower_case_ending(file) == ".exr";
+    const std::vector<std::string> channels =
+        is_exr ? exr_channel_names(file) : std::vector<std::string>{};
+    if (std::any_of(channels.begin(), channels.end(),
+                    [](const std::string& name) { return name.starts_with("S0."); })) {
+        const SpectralImage image = read_spectral_exr(file);
+        return {{"kind", "spectral image"},
+                {"size", fmt::format("{} x {}", image.width, image.height)},
+                {"bands", grid_text(image.bands)}};
+    }
+    const Image image = is_exr ? read_exr_image(file, ImageEncoding::Srgb)
+                               : read_png_image(file, ImageEncoding::Srgb);
+    return {{"kind", "image"}, {"size", fmt::format("{} x {}", image.width, image.height)}};
+}
+
 Json validate(const fs::path& file) {
-    if (file.extension() == ".ply" || file.extension() == ".obj")
-        return validate_mesh(file);
     switch (file_kind(file)) {
     case FileKind::Scene:
         return validate_scene(file);
     case FileKind::Material:
         return validate_material(file);
+    case FileKind::Layers:
+        return {{"kind", "layers"}, {"layers", load_stack(file).layers.size()}};
+    case FileKind::Recipe:
+        return validate_recipe(file);
+    case FileKind::Study:
+        return validate_study(file);
     case FileKind::Matrix:
         return validate_matrix(file);
+    case FileKind::Measurement:
+        return validate_measurement(file);
     case FileKind::Spectrum:
         return validate_spectrum(file);
+    case FileKind::ComplexIndex:
+        return validate_complex_index(file);
+    case FileKind::Polygons:
+        return {{"kind", "polygons of colour"}, {"polygons", read_colour_polygons(file).size()}};
+    case FileKind::Mesh:
+        return validate_mesh(file);
     case FileKind::Image:
-        break;
+        return validate_image(file);
     }
-    throw_input_error({file.string()}, "an image is not an input of this program",
-                      "reradiant info says what an image holds");
+    throw_input_error({file.string()}, "is of an unknown kind");
 }
 
 void print(const Json& value, const std::string& margin) {
@@ -142,12 +230,14 @@ void add_validate_command(CLI::App& program, CommandContext& context) {
     };
     auto options = std::make_shared<Options>();
     CLI::App* const command = program.add_subcommand(
-        "validate", "Checks a scene, material, re-radiation matrix, spectrum or mesh");
+        "validate", "Checks any file that another command takes, and says what it holds");
     CLI::Option_group* const what = command->add_option_group("what");
     what->require_option(1);
-    what->add_option("FILE", options->file,
-                     "TOML, XML, CSV, BFC, EXR, SPD, PLY or OBJ file, or a spectrum of JCAMP-DX, "
-                     "CGATS or IES TM-27");
+    what->add_option(
+        "FILE", options->file,
+        "scene, material, layers, recipe or study (TOML, XML), matrix (CSV, BFC, EXR), "
+        "measurement, spectrum (also JCAMP-DX, CGATS, IES TM-27), polygons, mesh (PLY, "
+        "OBJ) or image (EXR, PNG)");
     what->add_flag("--reference", options->reference,
                    "print every key of scene and material files, as Markdown");
     command->footer("Examples:\n"

@@ -4,6 +4,7 @@
 #include "host/measure/measure.h"
 #include "host/spectral/csv_lines.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/matrix_warnings.h"
 #include "host/spectral/plausible_matrix.h"
 #include "host/spectral/text_reader.h"
 
@@ -20,6 +21,11 @@ namespace reradiant {
 namespace {
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+bool is_table(const std::filesystem::path& file) {
+    const std::string ending = lower_case_ending(file);
+    return ending != ".bfc" && ending != ".exr";
+}
+
 /// True for the CSV of `measure`, by its line of headings.
 bool is_measurement_csv(const std::filesystem::path& file) {
     TextReader reader(file);
@@ -79,12 +85,16 @@ Eigen::Index BispectralData::measured_count() const {
     return count;
 }
 
-BispectralData read_bispectral_data(const std::filesystem::path& file) {
-    BispectralData data = lower_case_ending(file) == ".csv" && is_measurement_csv(file)
+BispectralData read_bispectral_data(const std::filesystem::path& file, const TableForm& form) {
+    const bool is_measurement = form == TableForm{} && is_table(file) && is_measurement_csv(file);
+    BispectralData data = is_measurement
                               ? read_measurement_blocks(file)
-                              : from_matrix(read_reradiation(file, Gaps::BecomeNan));
+                              : from_matrix(read_reradiation(file, Gaps::BecomeNan, form));
     data.file = file;
     refuse_impossible_units(data);
+    const BispectralBlock& first = data.blocks.front(); // all have the file's axes and quantity
+    warn_of_matrix(file.string(), {data.emission, data.excitation, first.value,
+                                   MatrixKind::Measured, data.anti_stokes_allowed});
     return data;
 }
 

@@ -2,6 +2,7 @@
 
 #include "host/spectral/grid.h"
 #include "host/spectral/reradiation.h"
+#include "host/spectral/table_form.h"
 
 #include <Eigen/Core>
 
@@ -44,8 +45,9 @@ struct BispectralData {
 /// Reads measured data by its ending: .csv (the re-radiation CSV of INTERFACE, where `nan` stands
 /// for an entry that was not measured, or the CSV of `measure`, whose diffuse rows are taken), .bfc
 /// or .exr. Values are raw: negative and anti-Stokes entries stay. Input Error with the place for
-/// what is malformed, contradictory or out of range.
-BispectralData read_bispectral_data(const std::filesystem::path& file);
+/// what is malformed, contradictory or out of range. `form` is what a plain table does not say of
+/// itself. Logs what speaks against the reading (matrix_warnings.h).
+BispectralData read_bispectral_data(const std::filesystem::path& file, const TableForm& form = {});
 
 /// Writes what read_bispectral_data reads back: one block without geometry as a re-radiation CSV
 /// of kind `measured` (without its sigma), blocks with geometries as the CSV of `measure`. Atomic.

@@ -1,6 +1,7 @@
 #include "host/spectral/csv_lines.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace reradiant {
 
@@ -11,6 +12,11 @@ std::string_view without_padding(std::string_view line) {
     if (line.size() > 1 && line.front() == '"' && line.find('"', 1) == line.size() - 1)
         line = trimmed(line.substr(1, line.size() - 2));
     return line;
+}
+
+std::vector<TextToken> table_cells(const TextReader& reader, std::string_view line) {
+    return line.find_first_of(",;\t") == std::string_view::npos ? reader.split_at_blanks(line)
+                                                                : reader.split_cells(line);
 }
 
 void drop_padding(std::vector<TextToken>& cells, std::size_t most) {
@@ -50,18 +56,22 @@ std::optional<HeaderEntry> header_entry(const TextReader& reader, std::string_vi
     return entry;
 }
 
-bool is_misspelt(std::string_view word, std::string_view right) {
-    while (!word.empty() && !right.empty() && word.front() == right.front()) {
-        word.remove_prefix(1);
-        right.remove_prefix(1);
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    // Row i of the table holds the distances of a's first i letters to the beginnings of b.
+    std::vector<std::size_t> before_last, last(b.size() + 1), row(b.size() + 1);
+    for (std::size_t k = 0; k <= b.size(); ++k)
+        last[k] = k;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        row[0] = i;
+        for (std::size_t k = 1; k <= b.size(); ++k) {
+            const std::size_t other = a[i - 1] == b[k - 1] ? 0 : 1;
+            row[k] = std::min({last[k] + 1, row[k - 1] + 1, last[k - 1] + other});
+            if (i > 1 && k > 1 && a[i - 1] == b[k - 2] && a[i - 2] == b[k - 1])
+                row[k] = std::min(row[k], before_last[k - 2] + 1);
+        }
+        before_last = std::exchange(last, row);
     }
-    while (!word.empty() && !right.empty() && word.back() == right.back()) {
-        word.remove_suffix(1);
-        right.remove_suffix(1);
-    }
-    const bool swapped =
-        word.size() == 2 && right.size() == 2 && word[0] == right[1] && word[1] == right[0];
-    return swapped || (word.size() <= 1 && right.size() <= 1 && word.size() + right.size() > 0);
+    return last[b.size()];
 }
 
 } // namespace reradiant

@@ -15,6 +15,8 @@ namespace reradiant {
 
 /// The line without the empty cells behind it and the quotation marks around the rest.
 std::string_view without_padding(std::string_view line);
+/// Cells of the reader's current line; blanks separate them where nothing else does.
+std::vector<TextToken> table_cells(const TextReader& reader, std::string_view line);
 /// Drops empty cells beyond the first `most`.
 void drop_padding(std::vector<TextToken>& cells, std::size_t most);
 /// True for a line that begins with '#'.
@@ -29,7 +31,8 @@ struct HeaderEntry {
 };
 /// Empty for a remark of another form.
 std::optional<HeaderEntry> header_entry(const TextReader& reader, std::string_view line);
-/// True where one word becomes the other by one letter more, less, other or swapped.
-bool is_misspelt(std::string_view word, std::string_view right);
+/// Letters more, less, other or swapped with their neighbour that make one word the other (optimal
+/// string alignment).
+std::size_t edit_distance(std::string_view a, std::string_view b);
 
 } // namespace reradiant

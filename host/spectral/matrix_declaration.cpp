@@ -1,10 +1,63 @@
 #include "host/spectral/csv_lines.h"
 #include "host/spectral/matrix_csv_header.h"
 #include "host/spectral/matrix_formats.h"
+#include "host/spectral/wavelength_unit.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <string>
 
 namespace reradiant {
+
+namespace {
+
+constexpr double shortest_nm = 100.0, longest_nm = 3000.0;
+constexpr std::size_t fewest_bands = 3;
+
+/// The number of a cell that may have "nm" behind it; 0 where it is none.
+double number_of(const TextToken& cell) {
+    std::string_view text = cell.text;
+    if (text.ends_with("nm"))
+        text = trimmed(text.substr(0, text.size() - 2));
+    return begins_as_number(text) && is_number(text) ? number_at(text, {}) : 0.0;
+}
+
+bool is_band(const TextToken& cell) {
+    const double nm = number_of(cell);
+    return nm >= shortest_nm && nm <= longest_nm;
+}
+
+} // namespace
+
+bool are_bands(const std::vector<TextToken>& cells, std::size_t from) {
+    if (cells.size() < from + fewest_bands ||
+        !std::all_of(cells.begin() + static_cast<long>(from), cells.end(), is_band))
+        return false;
+    const bool ascends = number_of(cells[from]) < number_of(cells[from + 1]);
+    for (std::size_t k = from + 1; k < cells.size(); ++k)
+        if ((number_of(cells[k - 1]) < number_of(cells[k])) != ascends ||
+            number_of(cells[k - 1]) == number_of(cells[k]))
+            return false;
+    return true;
+}
+
+namespace {
+
+/// A title may hold a number: "Sample 7" or "Integration time;0,5". It is shorter than the rows.
+bool is_title(const std::vector<TextToken>& cells, const std::vector<TextToken>& next) {
+    const auto numbers = std::count_if(cells.begin() + 1, cells.end(), [](const TextToken& cell) {
+        return begins_as_number(cell.text) && number_of(cell) != 0.0;
+    });
+    const auto others = static_cast<std::ptrdiff_t>(cells.size()) - 1 - numbers;
+    const bool is_short = cells.size() <= 3 && next.size() > cells.size() + 1;
+    const bool is_pair_above_words = cells.size() == 2 && !next.empty() &&
+                                     !begins_as_number(next[0].text) &&
+                                     !names_wavelengths(cells[0].text);
+    return numbers == 0 || is_short || is_pair_above_words ||
+           (others > 0 && next.size() != cells.size()) || others > numbers;
+}
+
+} // namespace
 
 bool names_long_form(const std::vector<TextToken>& headings) {
     return std::any_of(headings.begin(), headings.end(), [](const TextToken& heading) {
@@ -13,9 +66,39 @@ bool names_long_form(const std::vector<TextToken>& headings) {
     });
 }
 
-bool is_title(const std::vector<TextToken>& cells) {
-    return !begins_as_number(cells[0].text) && !names_long_form(cells) &&
-           (cells.size() < 2 || !begins_as_number(cells[1].text));
+std::vector<TextToken> next_cells(const TextReader& reader) {
+    const std::string_view rest = reader.rest();
+    for (std::size_t from = 0; from < rest.size();) {
+        const std::size_t to = std::min(rest.find('\n', from), rest.size());
+        const std::string_view line = rest.substr(from, to - from);
+        if (is_line_of_cells(line)) {
+            std::vector<TextToken> cells = table_cells(reader, line);
+            drop_padding(cells, 1);
+            if (cells.size() > 1 || !cells[0].text.empty())
+                return cells;
+        }
+        from = to + 1;
+    }
+    return {};
+}
+
+HeadingKind heading_kind(std::vector<TextToken> cells, std::vector<TextToken> next) {
+    drop_padding(cells, 1);
+    drop_padding(next, 1);
+    if (names_long_form(cells))
+        return HeadingKind::Headings;
+    const bool all_numbers = std::all_of(
+        cells.begin(), cells.end(), [](const TextToken& cell) { return number_of(cell) != 0.0; });
+    if (all_numbers && next.size() == cells.size() + 1)
+        return HeadingKind::HeadingsWithoutCorner;
+    // Programs without text in their tables write 0 into the corner.
+    if (cells[0].text == "0" && are_bands(cells, 1))
+        return HeadingKind::Headings;
+    if (begins_as_number(cells[0].text))
+        return HeadingKind::Row;
+    if (cells.size() == 1 && names_wavelengths(cells[0].text))
+        return HeadingKind::Headings; // without columns, which is said of it
+    return is_title(cells, next) ? HeadingKind::Title : HeadingKind::Headings;
 }
 
 std::optional<SourcePosition> declares_reradiation(const std::filesystem::path& file) {
@@ -35,13 +118,19 @@ std::optional<SourcePosition> declares_reradiation(const std::filesystem::path& 
         }
         if (!is_line_of_cells(line))
             continue;
-        const std::vector<TextToken> cells = reader.split_cells(line);
+        const std::vector<TextToken> cells = table_cells(reader, line), next = next_cells(reader);
+        const HeadingKind kind = heading_kind(cells, next);
         if (names_long_form(cells))
             return reader.position(cells[0]);
-        if (begins_as_number(cells[0].text))
+        if (kind == HeadingKind::Row)
             return std::nullopt; // the first row of a spectrum
-        if (!is_title(cells))
-            return mentioned;
+        if (kind == HeadingKind::Title)
+            continue;
+        std::vector<TextToken> headings = cells;
+        drop_padding(headings, 1);
+        const bool is_wide = are_bands(headings, kind == HeadingKind::Headings ? 1 : 0) &&
+                             !next.empty() && is_band(next[0]);
+        return mentioned || !is_wide ? mentioned : reader.position(cells[0]);
     }
     return std::nullopt;
 }

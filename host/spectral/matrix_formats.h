@@ -40,9 +40,10 @@ void scale_off_diagonal(ReradiationMatrix& matrix, double factor);
 void refuse_undeclared_anti_stokes(const ReradiationMatrix& matrix, const SourcePosition& position);
 
 /// Where a table says that it is a re-radiation CSV: in a line `# reradiation`, by its quantity or
-/// orientation, or by the headings of the long form. Empty for a spectrum.
+/// orientation, or by the headings of the long form or of three wavelengths. Empty for a spectrum.
 std::optional<SourcePosition> declares_reradiation(const std::filesystem::path& file);
-ReradiationMatrix read_matrix_csv(const std::filesystem::path& file, Gaps gaps = Gaps::Refused);
+ReradiationMatrix read_matrix_csv(const std::filesystem::path& file, Gaps gaps = Gaps::Refused,
+                                  const TableForm& form = {});
 ReradiationMatrix read_matrix_bfc(const std::filesystem::path& file);
 ReradiationMatrix read_matrix_exr(const std::filesystem::path& file);
 void write_matrix_bfc(const std::filesystem::path& file, const ReradiationMatrix& matrix);

@@ -1,5 +1,6 @@
 #include "host/spectral/matrix_io.h"
 
+#include "host/spectral/matrix_evidence.h"
 #include "host/spectral/matrix_formats.h"
 #include "host/spectral/plausible_matrix.h"
 #include "host/spectral/text_format.h"
@@ -38,6 +39,19 @@ void scale_off_diagonal(ReradiationMatrix& matrix, double factor) {
     }
 }
 
+/// Exchanged rows and columns are the usual cause, and show.
+std::string remedy_of_anti_stokes(const ReradiationMatrix& matrix) {
+    std::string remedy = "set it to 0, or write '# kind: measured' where it is noise and '# "
+                         "anti-stokes: allowed' where it is real (`reradiant convert` with --kind "
+                         "measured, --anti-stokes)";
+    const MatrixEvidence evidence = evidence_of(matrix);
+    if (evidence.stands_out && evidence.anti_stokes > evidence.stokes)
+        return fmt::format("{:.0f} % of the fluorescence is, so that rows and columns are probably "
+                           "exchanged: declare the other '# orientation'; else {}",
+                           100.0 * evidence.anti_stokes_share(), remedy);
+    return remedy;
+}
+
 void refuse_undeclared_anti_stokes(const ReradiationMatrix& matrix,
                                    const SourcePosition& position) {
     if (matrix.kind == MatrixKind::Measured || matrix.anti_stokes_allowed)
@@ -51,7 +65,7 @@ void refuse_undeclared_anti_stokes(const ReradiationMatrix& matrix,
                     fmt::format("excitation {} nm, emission {} nm: the value {} is anti-Stokes",
                                 matrix.excitation.centre_nm(i), matrix.emission.centre_nm(o),
                                 matrix.values(o, i)),
-                    "set it to 0, or declare anti-Stokes emission as allowed");
+                    remedy_of_anti_stokes(matrix));
 }
 
 bool holds_reradiation(const std::filesystem::path& file) {
@@ -61,17 +75,18 @@ bool holds_reradiation(const std::filesystem::path& file) {
     return text_format_of(file) == TextFormat::Table && declares_reradiation(file).has_value();
 }
 
-ReradiationMatrix read_reradiation(const std::filesystem::path& file, Gaps gaps) {
+ReradiationMatrix read_reradiation(const std::filesystem::path& file, Gaps gaps,
+                                   const TableForm& form) {
     const std::string ending = lower_case_ending(file);
-    ReradiationMatrix matrix;
-    if (ending == ".csv")
-        matrix = read_matrix_csv(file, gaps);
-    else if (ending == ".bfc")
-        matrix = read_matrix_bfc(file);
-    else if (ending == ".exr")
-        matrix = read_matrix_exr(file);
-    else
-        refuse_ending(file);
+    const bool is_exr = ending == ".exr", is_bfc = ending == ".bfc";
+    if ((is_exr || is_bfc) && form != TableForm{})
+        throw_input_error({file.string()},
+                          fmt::format("a {} file says itself how its numbers are meant",
+                                      is_exr ? "bispectral EXR" : "BFC-450"),
+                          "tell that of plain tables only");
+    const ReradiationMatrix matrix = is_exr   ? read_matrix_exr(file)
+                                     : is_bfc ? read_matrix_bfc(file)
+                                              : read_matrix_csv(file, gaps, form);
     require_plausible_matrix(matrix, file);
     return matrix;
 }

@@ -2,6 +2,7 @@
 
 #include "host/error.h"
 #include "host/spectral/matrix_csv_header.h"
+#include "host/spectral/matrix_evidence.h"
 #include "host/spectral/matrix_io.h"
 #include "host/spectral/text_reader.h"
 
@@ -21,7 +22,7 @@ constexpr double shortest_nm = 100.0, longest_nm = 3000.0;
 constexpr double largest_value = 10.0, largest_median_energy = 2.0;
 constexpr std::size_t most_cells = std::numeric_limits<std::size_t>::max();
 constexpr const char* remedy =
-    "values have unit 1; divide percent by 100 or write '# unit: percent'";
+    "values have unit 1; write '# unit: percent', or `reradiant convert` with --scale percent";
 
 /// Line and column of the first number of a CSV that is beyond the limit.
 SourcePosition place_of_large_value(const std::filesystem::path& file) {
@@ -33,11 +34,11 @@ SourcePosition place_of_large_value(const std::filesystem::path& file) {
     for (std::string_view line; reader.next_line(line);) {
         if (!is_line_of_cells(line))
             continue;
-        const std::vector<TextToken> tokens = reader.split_cells(line);
+        const std::vector<TextToken> tokens = table_cells(reader, line);
         if (end == 0) {
             // Long forms name the column of their values, behind which their errors follow.
             const bool is_measurement = tokens[0].text == "theta_i_deg";
-            if (is_title(tokens) && !is_measurement)
+            if (!is_measurement && heading_kind(tokens, next_cells(reader)) == HeadingKind::Title)
                 continue;
             const bool is_long = is_measurement || names_long_form(tokens);
             const auto value =
@@ -92,12 +93,16 @@ void require_plausible_matrix(const ReradiationMatrix& matrix, const std::filesy
     std::vector<double> energy = energies(matrix);
     const auto middle = energy.begin() + static_cast<std::ptrdiff_t>(energy.size() / 2);
     std::nth_element(energy.begin(), middle, energy.end());
-    if (*middle > largest_median_energy)
-        throw_input_error({file.string(), file.empty() ? 0 : 1, 1},
-                          fmt::format("excitation bands return {:.6g} times the energy that they "
-                                      "receive, in the median",
-                                      *middle),
-                          remedy);
+    if (*middle <= largest_median_energy)
+        return;
+    const bool is_density = was_taken_as_density(evidence_of(matrix), matrix.excitation.step_nm);
+    throw_input_error({file.string(), file.empty() ? 0 : 1, 1},
+                      fmt::format("excitation bands return {:.6g} times the energy that they "
+                                  "receive, in the median",
+                                  *middle),
+                      is_density ? "the values are probably per band and were taken as per nm: "
+                                   "declare '# quantity: per-band'"
+                                 : remedy);
 }
 
 } // namespace reradiant

@@ -1,5 +1,6 @@
 #include "host/spectral/reradiation.h"
 
+#include "host/spectral/matrix_warnings.h"
 #include "host/spectral/scatter_warnings.h"
 
 #include <fmt/format.h>
@@ -86,27 +87,17 @@ MatrixRepair zero_impossible_entries(ReradiationMatrix& matrix) {
     return repair;
 }
 
-void refuse_energy_gain(const ReradiationMatrix& matrix, const std::vector<double>& radiant) {
+/// `cause`: what the matrix looks like when it is not taken at its word; may be empty.
+void refuse_energy_gain(const ReradiationMatrix& matrix, const std::vector<double>& radiant,
+                        const std::string& cause) {
     for (int i = 0; i < matrix.excitation.count; ++i) {
         const double sum = radiant[static_cast<std::size_t>(i)];
         if (sum > 1.0 + balance_slack)
             throw std::invalid_argument(
                 fmt::format("the column of excitation {} nm returns {:.6g} times the energy it "
-                            "receives; at most 1 is possible",
-                            matrix.excitation.centre_nm(i), sum));
+                            "receives; at most 1 is possible{}{}",
+                            matrix.excitation.centre_nm(i), sum, cause.empty() ? "" : "; ", cause));
     }
-}
-
-std::string photon_warning(const ReradiationMatrix& matrix, const std::vector<double>& photons) {
-    const auto worst = std::max_element(photons.begin(), photons.end());
-    if (worst == photons.end() || *worst <= 1.0 + balance_slack)
-        return {};
-    const auto over = std::count_if(photons.begin(), photons.end(),
-                                    [](double sum) { return sum > 1.0 + balance_slack; });
-    return fmt::format("{} excitation column{} return more photons than they receive, the most "
-                       "{:.6g} per photon at {} nm",
-                       over, over == 1 ? "" : "s", *worst,
-                       matrix.excitation.centre_nm(static_cast<int>(worst - photons.begin())));
 }
 
 /// Share of each source cell that lies in each target cell: (target, source), in nm.
@@ -193,12 +184,15 @@ MatrixRepair repair_for_rendering(ReradiationMatrix& matrix, std::vector<std::st
     require_finite(matrix);
     if (matrix.kind == MatrixKind::Model)
         refuse_impossible_entries(matrix);
+    const std::vector<std::string> misreadings = misreading_warnings(matrix);
+    warnings.insert(warnings.end(), misreadings.begin(), misreadings.end());
     for (std::string& warning : scatter_warnings(matrix))
         warnings.push_back(std::move(warning));
     MatrixRepair repair = zero_impossible_entries(matrix);
     const ColumnBalance balance = column_balance(matrix);
-    refuse_energy_gain(matrix, balance.radiant);
-    if (const std::string warning = photon_warning(matrix, balance.photons); !warning.empty())
+    refuse_energy_gain(matrix, balance.radiant, misreadings.empty() ? "" : misreadings.front());
+    if (const std::string warning = photon_warning(balance.photons, matrix.excitation);
+        !warning.empty())
         warnings.push_back(warning);
     return repair;
 }

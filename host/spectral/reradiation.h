@@ -78,7 +78,7 @@ struct MatrixRepair {
 /// anti-Stokes entries without leave throws std::invalid_argument naming the column; entries
 /// between -1e-6 and 0 become 0 and are reported. A measurement has negative and anti-Stokes
 /// entries set to zero, reported; it is refused only when it breaks energy beyond 1 + 1e-6
-/// after that. `warnings` gets photon sums over 1 + 1e-6 and scatter that stands out.
+/// after that. `warnings` gets photon sums over 1 + 1e-6, scatter, and what shows a misreading.
 MatrixRepair repair_for_rendering(ReradiationMatrix& matrix, std::vector<std::string>& warnings);
 
 /// The fluorescent part on the cells of `cells`, conserving energy: entry (o, i) is the mean over

@@ -92,11 +92,14 @@ bool is_gap(std::string_view text) {
     return std::find(gap_words.begin(), gap_words.end(), lower) != gap_words.end();
 }
 
-TextReader::TextReader(const std::filesystem::path& file, TextFormat expected)
+TextReader::TextReader(const std::filesystem::path& file, TextFormat expected, DecimalMark decimal)
     : name_(file.string()), content_(read_text_file(file)) {
     const TextFormat format = text_format(content_);
-    if (format == expected)
+    if (format == expected) {
+        if (format == TextFormat::Table || format == TextFormat::Bfc)
+            decimal_doubt_ = write_decimal_points(content_, decimal, name_);
         return;
+    }
     const bool is_spectrum =
         format == TextFormat::JcampDx || format == TextFormat::Cgats || format == TextFormat::Tm27;
     const char* const remedy = is_spectrum                 ? "give it where a spectrum is asked for"
@@ -157,14 +160,14 @@ std::vector<TextToken> TextReader::split_at_blanks(std::string_view line) const 
 }
 
 double TextReader::number(const TextToken& token) const {
-    return number_at(token.text, position(token));
+    return number_at(token.text, position(token), decimal_doubt_);
 }
 
 double TextReader::wavelength_nm(const TextToken& token) const {
-    return wavelength_nm_at(token.text, position(token));
+    return wavelength_nm_at(token.text, position(token), decimal_doubt_);
 }
 
-double number_at(std::string_view text, const SourcePosition& at) {
+double number_at(std::string_view text, const SourcePosition& at, const std::string& comma_remedy) {
     if (is_gap(text))
         throw_input_error(at,
                           text.empty() ? std::string("a value is missing")
@@ -173,9 +176,10 @@ double number_at(std::string_view text, const SourcePosition& at) {
     double value = 0.0;
     if (!parse(text, value))
         throw_input_error(at, fmt::format("'{}' is not a number", shortened(text)),
-                          text.find(',') != std::string_view::npos
-                              ? "write a decimal point and no thousands separators, as in 0.25"
-                              : "write it like 0.25 or 2.5e-1");
+                          text.find(',') == std::string_view::npos ? "write it like 0.25 or 2.5e-1"
+                          : !comma_remedy.empty()
+                              ? comma_remedy
+                              : "write a decimal point and no thousands separators, as in 0.25");
     if (!(std::abs(value) <= largest_magnitude))
         throw_input_error(at,
                           fmt::format("'{}' is not a finite number of magnitude up to {:g}",
@@ -184,10 +188,11 @@ double number_at(std::string_view text, const SourcePosition& at) {
     return value;
 }
 
-double wavelength_nm_at(std::string_view text, const SourcePosition& at) {
+double wavelength_nm_at(std::string_view text, const SourcePosition& at,
+                        const std::string& comma_remedy) {
     if (begins_as_number(text) && text.ends_with("nm"))
         text = trimmed(text.substr(0, text.size() - 2));
-    const double value = number_at(text, at);
+    const double value = number_at(text, at, comma_remedy);
     if (!(value > 0.0 && value <= largest_wavelength_nm))
         throw_input_error(at, fmt::format("{} nm is not a wavelength", value),
                           "wavelengths are in nm and above 0");

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "host/error.h"
+#include "host/spectral/decimal_comma.h"
 #include "host/spectral/text_format.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -22,19 +24,27 @@ struct TextToken {
 class TextReader {
 public:
     /// Input Error when the file cannot be read, is no text (see read_text_file), or says that it
-    /// is of another format than the one that is read here.
-    explicit TextReader(const std::filesystem::path& file, TextFormat expected = TextFormat::Table);
+    /// is of another format than the one that is read here. Decimal commas of tables become points
+    /// where they are none but that, or are said to be it.
+    explicit TextReader(const std::filesystem::path& file, TextFormat expected = TextFormat::Table,
+                        DecimalMark decimal = DecimalMark::Automatic);
 
     /// Next line without its end; false after the last.
     bool next_line(std::string_view& line);
     /// The line that next_line will give.
     bool peek_line(std::string_view& line) const;
+    /// All that follows the current line.
+    std::string_view rest() const {
+        return std::string_view(content_).substr(std::min(next_, content_.size()));
+    }
     int line_number() const { return line_; }
     SourcePosition position(const TextToken& token) const;
     SourcePosition position(int line, int column) const { return {name_, line, column}; }
     /// For what is wrong with the file as a whole: its last line.
     SourcePosition end_position() const { return {name_, line_ > 0 ? line_ : 1, 1}; }
     const std::string& name() const { return name_; }
+    /// What would tell whether commas in numbers are decimal marks; empty where it is clear.
+    const std::string& decimal_doubt() const { return decimal_doubt_; }
 
     /// Cells of the current line, blanks and quotation marks around them removed; an empty cell is
     /// kept. The separator is the semicolon where the line has one, else the comma, else the tab.
@@ -50,13 +60,17 @@ public:
 private:
     std::string name_;
     std::string content_;
+    std::string decimal_doubt_; ///< what would tell decimal commas from others
     std::size_t next_ = 0;
     int line_ = 0;
 };
 
-/// TextReader::number and TextReader::wavelength_nm for a text at a place.
-double number_at(std::string_view text, const SourcePosition& at);
-double wavelength_nm_at(std::string_view text, const SourcePosition& at);
+/// TextReader::number and TextReader::wavelength_nm for a text at a place. `comma_remedy` is for a
+/// text with a comma in it.
+double number_at(std::string_view text, const SourcePosition& at,
+                 const std::string& comma_remedy = {});
+double wavelength_nm_at(std::string_view text, const SourcePosition& at,
+                        const std::string& comma_remedy = {});
 
 std::string_view trimmed(std::string_view text);
 /// True when the text is one number and nothing else.

@@ -171,6 +171,33 @@ class Objects(unittest.TestCase):
             series, term = series + term, matrix.values @ r @ term
         np.testing.assert_allclose(glass.over(matrix), series, rtol=1e-12)
 
+    def test_plain_tables_are_told_what_they_hold(self):
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        file = folder / "export.csv"
+        file.write_text(";400;410\n400;50,0;\n410;2,5;60,0\n")
+        with self.assertRaisesRegex(rr.InputError, "--rows emission --quantity per-band"):
+            rr.Reradiation.read(file)
+        told = {"rows": "emission", "quantity": "per-band", "scale": "percent"}
+        np.testing.assert_allclose(rr.Reradiation.read(file, **told).values,
+                                   [[0.5, 0.0], [0.025, 0.6]], rtol=1e-15)
+        told.update(quantity="density", scale=0.01, decimal="comma", kind="measured")
+        matrix = rr.Reradiation.read(file, **told)
+        self.assertTrue(matrix.measured)
+        np.testing.assert_allclose(matrix.values, [[0.5, 0.0], [0.25, 0.6]], rtol=1e-15)
+        np.testing.assert_array_equal(rr.BispectralData.read(file, **told).matrix().values,
+                                      matrix.values)
+        for wrong in ({"rows": "both"}, {"scale": 0}, {"scale": "much"}, {"decimal": ";"}):
+            with self.assertRaisesRegex(rr.InputError, next(iter(wrong))):
+                rr.Reradiation.read(file, **{**told, **wrong})
+
+    def test_a_misreading_reaches_the_logger(self):
+        orange = rr.Reradiation.read(EXAMPLES.parents[1] / "spectra" / "reradiation" /
+                                     "synthetic-orange.csv")
+        with self.assertLogs("reradiant", "WARNING") as logs:
+            rr.Reradiation(orange.values.T, orange.excitation_nm, orange.emission_nm,
+                           measured=True)
+        self.assertIn("exchanged", logs.output[0])
+
     def test_warnings_reach_the_logger(self):
         scene = sphere_scene(light=[{"type": "environment",
                                      "radiance": {"nm": [450, 600], "value": [1, 1]}}])

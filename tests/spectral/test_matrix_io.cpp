@@ -219,7 +219,8 @@ TEST_F(MatrixIo, CsvOfSpreadsheetsIsRead) {
                              "nm\t400\t410\n400\t0.3\t0\n\f\n410\t0.2\t0.4\n",
                              "Wavelength (nm),400nm,410nm\n400nm,0.3,0\n410nm,0.2,0.4\n"})
         expect_same(read_reradiation(write("s.csv", head + body)), plain, 0.0);
-    place_of_refusal("c.csv", head + "nm;400;410\n400;0,3;0\n410;0,2;0,4\n");
+    expect_same(read_reradiation(write("c.csv", head + "nm;400;410\n400;0,3;0\n410;0,2;0,4\n")),
+                plain, 0.0);
 }
 
 TEST_F(MatrixIo, Case26AntiStokesModelIsRefusedUnlessDeclared) {

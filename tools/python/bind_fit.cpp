@@ -104,8 +104,8 @@ py::list blocks_of(const BispectralData& data) {
 void bind_data(py::module_& module) {
     py::class_<BispectralData, DataPointer>(module, "BispectralData")
         .def_static("read",
-                    [](const std::string& file) {
-                        return std::make_shared<BispectralData>(read_bispectral_data(file));
+                    [](const std::string& file, const TableForm& form) {
+                        return std::make_shared<BispectralData>(read_bispectral_data(file, form));
                     })
         .def_static("from_matrix", &data_from_matrix)
         .def_property_readonly("emission",

@@ -2,6 +2,7 @@
 #include "host/report/svg.h"
 #include "host/spectral/colour_report.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/matrix_warnings.h"
 #include "host/spectral/plausible_matrix.h"
 #include "host/spectral/reradiation.h"
 #include "host/spectral/rounded_grid.h"
@@ -32,6 +33,13 @@ MatrixPointer make_matrix(const Eigen::MatrixXd& values, const py::tuple& emissi
     matrix->kind = measured ? MatrixKind::Measured : MatrixKind::Model;
     matrix->anti_stokes_allowed = anti_stokes;
     require_plausible_matrix(*matrix, {});
+    warn_of_matrix("", *matrix);
+    return matrix;
+}
+
+MatrixPointer read_matrix(const std::string& file, const TableForm& form) {
+    auto matrix = std::make_shared<ReradiationMatrix>(read_reradiation(file, Gaps::Refused, form));
+    warn_of_matrix(file, *matrix);
     return matrix;
 }
 
@@ -103,13 +111,16 @@ py::object rounded_grid(const Doubles& centres_nm, double rounding_nm) {
 
 void bind_matrices(py::module_& module) {
     module.def("rounded_grid", &rounded_grid);
+    py::class_<TableForm>(module, "TableForm")
+        .def(py::init([](const std::string& rows, const std::string& quantity,
+                         const std::string& scale, const std::string& decimal,
+                         const std::string& kind, bool anti_stokes) {
+            return table_form({rows, quantity, scale, decimal, kind, anti_stokes});
+        }));
     py::class_<ReradiationMatrix, MatrixPointer>(module, "ReradiationMatrix")
         .def(py::init(&make_matrix))
         .def_static("from_fluorophores", &from_fluorophores)
-        .def_static("read",
-                    [](const std::string& file) {
-                        return std::make_shared<ReradiationMatrix>(read_reradiation(file));
-                    })
+        .def_static("read", &read_matrix)
         .def("write",
              [](const ReradiationMatrix& matrix, const std::string& file) {
                  check_output_file(file);

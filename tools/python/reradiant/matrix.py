@@ -10,6 +10,23 @@ from . import _checks, _library
 from .spectrum import Spectrum
 
 
+def table_form(rows: Optional[str], quantity: Optional[str], scale: Any, decimal: Optional[str],
+               kind: Optional[str], anti_stokes: bool) -> "_library.TableForm":
+    """What a plain table does not say of itself, checked."""
+    def word(name: str, value: Optional[str], names: Sequence[str]) -> str:
+        return "" if value is None else _checks.choice(name, value, names)
+
+    if scale is None or isinstance(scale, str):
+        factor = word("scale", scale, ["percent", "permille"])
+    else:
+        factor = repr(_checks.number("scale", scale, 0, above=True))
+    return _library.TableForm(
+        word("rows", rows, ["emission", "excitation", "rows-emission", "rows-excitation"]),
+        word("quantity", quantity, ["per-band", "density", "density-per-nm"]), factor,
+        word("decimal", decimal, ["comma", "point"]), word("kind", kind, ["measured", "model"]),
+        _checks.flag("anti_stokes", anti_stokes))
+
+
 class Reradiation:
     """A re-radiation matrix in per-band form: exitance[o] = sum over i of values[o, i] *
     irradiance[i], both spectral, per nm.
@@ -63,7 +80,8 @@ class Reradiation:
                 "values", f"has shape {numbers.shape}",
                 f"give (emission, excitation) = ({emission[2]}, {excitation[2]})")
         numbers = np.ascontiguousarray(numbers[np.ix_(rows, columns)])
-        if _checks.choice("quantity", quantity, ["per-band", "density-per-nm"]) != "per-band":
+        if _checks.choice("quantity", quantity,
+                          ["per-band", "density", "density-per-nm"]) != "per-band":
             off = ~np.isclose(_checks.centres(emission)[:, None], _checks.centres(excitation)[None, :],
                               rtol=0, atol=1e-6 * min(emission[1], excitation[1]))
             numbers = np.where(off, numbers * excitation[1], numbers)
@@ -85,10 +103,33 @@ class Reradiation:
         return self._matrix
 
     @classmethod
-    def read(cls, file: Any) -> "Reradiation":
+    def read(cls, file: Any, *, rows: Optional[str] = None, quantity: Optional[str] = None,
+             scale: Any = None, decimal: Optional[str] = None, kind: Optional[str] = None,
+             anti_stokes: bool = False) -> "Reradiation":
         """Reads a re-radiation CSV, a .bfc of a Labsphere BFC-450 or a bispectral EXR; values are
-        raw, nothing is repaired."""
-        return cls._of(_library.ReradiationMatrix.read(_checks.path("file", file)))
+        raw, nothing is repaired. What speaks against the reading is logged.
+
+        Parameters
+        ----------
+        rows : "emission" or "excitation"
+            What a row of a plain table belongs to. This and the others are for tables that do not
+            say it themselves; where they do, both must agree.
+        quantity : "per-band" or "density"
+        scale : "percent", "permille" or float
+            The factor that makes a white reflect 1.
+        decimal : "comma" or "point"
+            Told by itself where semicolons or tabs part the cells.
+        kind : "measured" or "model"
+        anti_stokes : bool
+            Emission below the excitation is real.
+
+        Raises
+        ------
+        InputError
+            For a table that says too little, or other than the arguments.
+        """
+        form = table_form(rows, quantity, scale, decimal, kind, anti_stokes)
+        return cls._of(_library.ReradiationMatrix.read(_checks.path("file", file), form))
 
     @classmethod
     def from_fluorophores(cls, fluorophores: Sequence[Tuple[Spectrum, Spectrum, float]],

@@ -7,7 +7,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 import numpy as np
 
 from . import _checks, _library
-from .matrix import Reradiation
+from .matrix import Reradiation, table_form
 
 
 class Measurement:
@@ -93,9 +93,13 @@ class BispectralData:
         self._data = data
 
     @classmethod
-    def read(cls, file: Any) -> "BispectralData":
-        """Reads a re-radiation CSV (`nan`: not measured), a CSV of `measure`, .bfc or .exr."""
-        return cls(_library.BispectralData.read(_checks.path("file", file)))
+    def read(cls, file: Any, *, rows: Optional[str] = None, quantity: Optional[str] = None,
+             scale: Any = None, decimal: Optional[str] = None, kind: Optional[str] = None,
+             anti_stokes: bool = False) -> "BispectralData":
+        """Reads a re-radiation CSV (`nan`: not measured), a CSV of `measure`, .bfc or .exr. The
+        keywords are for plain tables, as those of `Reradiation.read`."""
+        form = table_form(rows, quantity, scale, decimal, kind, anti_stokes)
+        return cls(_library.BispectralData.read(_checks.path("file", file), form))
 
     @classmethod
     def of(cls, data: Any) -> "BispectralData":
