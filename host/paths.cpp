@@ -34,16 +34,21 @@ fs::path own_folder() {
     std::error_code failure;
     if (dladdr(reinterpret_cast<const void*>(&own_folder), &info) == 0 || info.dli_fname == nullptr)
         return {};
-    // Of a program that was started without a path only its name is known here.
-    const fs::path itself = fs::canonical(info.dli_fname, failure);
-    return failure ? fs::canonical("/proc/self/exe", failure).parent_path() : itself.parent_path();
+    // Of a program that PATH found only its name is known here, and the working folder may hold
+    // another file of that name.
+    if (const fs::path name = info.dli_fname; name.has_parent_path())
+        if (const fs::path itself = fs::canonical(name, failure); !failure)
+            return itself.parent_path();
+    return fs::canonical("/proc/self/exe", failure).parent_path();
 }
 
 /// Where the data may lie: as said, beside what was installed, in the source tree.
 std::vector<fs::path> data_candidates() {
     std::vector<fs::path> candidates{environment("RERADIANT_DATA")};
     if (const fs::path own = own_folder(); !own.empty())
-        for (const char* beside : {"data", "../share/reradiant", "../../share/reradiant"})
+        // The last is that of a Python module, in lib/python3.x/site-packages/reradiant.
+        for (const char* beside :
+             {"../share/reradiant", "../../share/reradiant", "../../../../share/reradiant"})
             candidates.push_back(own / beside);
     candidates.insert(candidates.end(), {RERADIANT_SOURCE_DIR, RERADIANT_INSTALL_DATA_DIR});
     return candidates;

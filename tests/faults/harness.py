@@ -66,14 +66,25 @@ class Result:
     errors: str
 
 
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+
+
 class Bench:
     """The program under test and a scratch folder."""
 
     def __init__(self, program, shim, full):
-        self.program, self.shim, self.full = program, shim, full
-        # Not beneath a private home: some runs are those of another user.
+        self.shim, self.full = pathlib.Path(shim).resolve(), full
         self.root = pathlib.Path(tempfile.mkdtemp(prefix="reradiant-faults-"))
         self.root.chmod(0o755)
+        # Some runs are those of another user, whom a home may keep out of the checkout: he has a
+        # program and data of his own, laid out as an installation is.
+        self.program = self.root / "bin" / "reradiant"
+        self.program.parent.mkdir()
+        shutil.copy(program, self.program)
+        for data in ("kernels", "spectra"):
+            shutil.copytree(SOURCE / data, self.root / "share" / "reradiant" / data)
+        for copied in self.root.rglob("*"): # whatever the umask
+            copied.chmod(0o755 if copied.is_dir() or copied == self.program else 0o644)
         self.cache = self.root / "cache"
         self.folders = 0
 

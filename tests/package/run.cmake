@@ -21,7 +21,7 @@ function(link_example prefix folder)
   set(example ${SOURCE}/tools/examples/link-library)
   # T = 4 n / (n + 1)^2 at n = 1.5; r as README has it.
   set(expected "T 0.960000, r 0.596346\nXYZ [0-9.]+ [0-9.]+ [0-9.]+")
-  run(said ${CMAKE_COMMAND} -S ${example} -B ${folder}/cmake -DCMAKE_PREFIX_PATH=${prefix})
+  run(said ${CMAKE_COMMAND} -G Ninja -S ${example} -B ${folder}/cmake -DCMAKE_PREFIX_PATH=${prefix})
   run(said ${CMAKE_COMMAND} --build ${folder}/cmake)
   run(said ${folder}/cmake/link-library)
   expect("${said}" "${expected}")

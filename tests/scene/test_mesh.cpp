@@ -1,6 +1,7 @@
 #include "host/scene/mesh_io.h"
 #include "tests/scene/scratch.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 

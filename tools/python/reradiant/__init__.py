@@ -6,10 +6,9 @@ work on and show themselves in notebooks. Wavelengths are in nm, angles in degre
 their sources are in the project's README.
 """
 
-from . import _library
-from ._numpy_version import require_numpy_of
+from ._compiled_part import load_compiled_part
 
-require_numpy_of(_library.pybind11_version)
+_library = load_compiled_part()
 
 from . import colour_science
 from .errors import Error, InputError, RunError
