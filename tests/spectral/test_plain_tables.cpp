@@ -165,6 +165,10 @@ TEST_F(PlainTables, AKeyThatIsNearlyRightNamesTheRightOne) {
             refused(line + ("\n" + declared) + points, "did you mean '" + std::string(key) + "'"),
             (std::pair{1, 3}))
             << line;
+    EXPECT_EQ(refused("# rows: excitation\n" + points, "write '# orientation: rows-excitation'"),
+              (std::pair{1, 3}));
+    EXPECT_EQ(refused("# scale: percent\n" + declared + points, "write '# unit: percent'"),
+              (std::pair{1, 3}));
     EXPECT_EQ(refused("quantity: per-band\n" + points, "write '# quantity: per-band'"),
               (std::pair{1, 1}));
     EXPECT_EQ(refused("# kind measured\n" + declared + points, "write '# kind: measured'"),
