@@ -102,14 +102,20 @@ private:
                               .is_measured = header_.kind.has_value(),
                               .needs_decimal = !reader_.decimal_doubt().empty()};
         try {
-            if (!names_long_form(headings)) {
-                CellReader cells(reader_, header_, axis_unit(reader_, headings));
+            const std::optional<LongColumns> columns = long_columns(reader_, headings);
+            CellReader cells(reader_, header_,
+                             columns ? WavelengthUnit{} : axis_unit(reader_, headings));
+            CsvBody body;
+            if (columns) {
+                body = read_long(cells, *columns, Gaps::BecomeNan);
+            } else {
                 WideTable wide = read_wide(cells, headings);
-                table.is_scaled = table.is_scaled || header_.is_percent || header_.factor;
                 table.has_gaps = !wide.gaps.empty();
-                table.has_percent_signs = cells.signs().some;
-                table.as_rows_emission = assemble(sorted_body(std::move(wide), true));
+                body = sorted_body(std::move(wide), true);
             }
+            table.is_scaled = table.is_scaled || header_.is_percent || header_.factor;
+            table.has_percent_signs = cells.signs().some;
+            table.as_rows_emission = assemble(std::move(body));
         } catch (const Error&) { // the values say nothing then; what is wrong with them comes next
         }
         refuse_undeclared_table(table, at);

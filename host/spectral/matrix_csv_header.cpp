@@ -92,6 +92,17 @@ void refuse_misspelt(const TextReader& reader, const HeaderEntry& entry) {
     if (is_one_of(std::array{"find", "mind", "wind", "king", "kin", "uni", "quality", "geometric"},
                   entry.name))
         return;
+    const auto refuse = [&](const char* right) {
+        throw_input_error(reader.position(entry.key),
+                          fmt::format("the key '{}' is not known", entry.key.text),
+                          fmt::format("write '# {}'", right));
+    };
+    // The words that options have for the same.
+    const std::string value = lower_case(entry.value.text);
+    if (entry.name == "rows" && (value == "emission" || value == "excitation"))
+        refuse(("orientation: rows-" + value).c_str());
+    if (is_one_of(std::array{"scale", "values"}, entry.name) && names_percent(value))
+        refuse("unit: percent");
     for (const char* key : known_keys)
         if (is_nearly(entry.name, key))
             throw_input_error(reader.position(entry.key),

@@ -49,7 +49,10 @@ void add_told(const TextReader& reader, CsvHeader& header, const TableForm& told
 /// factor that nobody told to apply.
 void require_consistent_unit(const CsvHeader& header, const TableForm& told);
 
-/// True for the headings excitation_nm,emission_nm,value in any order.
+/// What a column of the long form holds, by its heading: excitation_nm, "Ex (nm)" and so on.
+enum class LongRole { None, Excitation, Emission, Value };
+LongRole long_role(std::string_view heading);
+/// True for the headings excitation_nm,emission_nm,value in any order and of any such spelling.
 bool names_long_form(const std::vector<TextToken>& headings);
 /// Wavelengths in nm, three at least, that ascend or descend: all cells from one on.
 bool are_bands(const std::vector<TextToken>& cells, std::size_t from);

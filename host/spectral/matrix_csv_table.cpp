@@ -132,14 +132,15 @@ std::optional<LongColumns> long_columns(const TextReader& reader,
                                         const std::vector<TextToken>& headings) {
     if (!names_long_form(headings))
         return std::nullopt;
-    const auto column = [&](std::string_view name) {
+    const auto column = [&](LongRole role) {
         return static_cast<std::size_t>(std::find_if(headings.begin(), headings.end(),
                                                      [&](const TextToken& heading) {
-                                                         return lower_case(heading.text) == name;
+                                                         return long_role(heading.text) == role;
                                                      }) -
                                         headings.begin());
     };
-    const LongColumns columns{column("excitation_nm"), column("emission_nm"), column("value")};
+    const LongColumns columns{column(LongRole::Excitation), column(LongRole::Emission),
+                              column(LongRole::Value)};
     if (headings.size() != 3 || columns.excitation + columns.emission + columns.value != 3)
         throw_input_error(reader.position(headings[0]), "these headings are not known",
                           "write excitation_nm,emission_nm,value");

@@ -4,6 +4,7 @@
 #include "host/spectral/wavelength_unit.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string>
 
@@ -59,11 +60,31 @@ bool is_title(const std::vector<TextToken>& cells, const std::vector<TextToken>&
 
 } // namespace
 
+LongRole long_role(std::string_view heading) {
+    std::string name = lower_case(heading);
+    for (const std::string_view unit : {"(nm)", "[nm]", "/nm", "_nm", " nm"})
+        if (name.ends_with(unit))
+            name.erase(name.size() - unit.size());
+    name.erase(std::min(name.find_last_not_of(' ') + 1, name.size()));
+    std::replace(name.begin(), name.end(), '_', ' ');
+    if (is_one_of(std::array{"excitation", "excitation wavelength", "exc", "ex"}, name))
+        return LongRole::Excitation;
+    if (is_one_of(std::array{"emission", "emission wavelength", "em"}, name))
+        return LongRole::Emission;
+    return is_one_of(std::array{"value", "values", "radiance factor"}, name) ? LongRole::Value
+                                                                             : LongRole::None;
+}
+
 bool names_long_form(const std::vector<TextToken>& headings) {
-    return std::any_of(headings.begin(), headings.end(), [](const TextToken& heading) {
+    bool has_excitation = false, has_emission = false;
+    for (const TextToken& heading : headings) {
         const std::string name = lower_case(heading.text);
-        return name == "excitation_nm" || name == "emission_nm";
-    });
+        if (name == "excitation_nm" || name == "emission_nm")
+            return true;
+        has_excitation = has_excitation || long_role(name) == LongRole::Excitation;
+        has_emission = has_emission || long_role(name) == LongRole::Emission;
+    }
+    return has_excitation && has_emission;
 }
 
 std::vector<TextToken> next_cells(const TextReader& reader) {

@@ -43,7 +43,7 @@ SourcePosition place_of_large_value(const std::filesystem::path& file) {
             const bool is_long = is_measurement || names_long_form(tokens);
             const auto value =
                 std::find_if(tokens.begin(), tokens.end(), [](const TextToken& heading) {
-                    return lower_case(heading.text) == "value";
+                    return long_role(heading.text) == LongRole::Value;
                 });
             first = is_long ? static_cast<std::size_t>(value - tokens.begin()) : 1;
             end = is_measurement ? tokens.size() : is_long ? first + 1 : most_cells;

@@ -109,6 +109,17 @@ TEST_F(PlainTables, CornersAndTitlesOfAnyProgramAreRead) {
               (std::pair{1, 1}));
 }
 
+TEST_F(PlainTables, TheLongFormHasManySpellings) {
+    const std::string lines = "400;400;0,25\n400;410;0,02\n400;420;0,125\n410;410;0,5\n"
+                              "410;420;0,03\n420;420;0,75\n";
+    for (const char* headings :
+         {"excitation_nm;emission_nm;value", "Ex (nm);Em (nm);Value", "Excitation;Emission;Values",
+          "excitation wavelength [nm];emission wavelength [nm];radiance factor"})
+        expect_same(headings + ("\n" + lines), rows_emission);
+    EXPECT_EQ(refused("Ex;Em;Value\n" + lines, "--rows emission --quantity per-band"),
+              (std::pair{1, 1}));
+}
+
 TEST_F(PlainTables, WhatTheFileSaysBeatsNothingSilently) {
     EXPECT_EQ(refused(declared + points, "'orientation' contradicts", {.rows = "excitation"}),
               (std::pair{2, 3}));
@@ -154,6 +165,10 @@ TEST_F(PlainTables, AKeyThatIsNearlyRightNamesTheRightOne) {
             refused(line + ("\n" + declared) + points, "did you mean '" + std::string(key) + "'"),
             (std::pair{1, 3}))
             << line;
+    EXPECT_EQ(refused("# rows: excitation\n" + points, "write '# orientation: rows-excitation'"),
+              (std::pair{1, 3}));
+    EXPECT_EQ(refused("# scale: percent\n" + declared + points, "write '# unit: percent'"),
+              (std::pair{1, 3}));
     EXPECT_EQ(refused("quantity: per-band\n" + points, "write '# quantity: per-band'"),
               (std::pair{1, 1}));
     EXPECT_EQ(refused("# kind measured\n" + declared + points, "write '# kind: measured'"),

@@ -105,7 +105,10 @@ void bind_data(py::module_& module) {
     py::class_<BispectralData, DataPointer>(module, "BispectralData")
         .def_static("read",
                     [](const std::string& file, const TableForm& form) {
-                        return std::make_shared<BispectralData>(read_bispectral_data(file, form));
+                        auto data =
+                            std::make_shared<BispectralData>(read_bispectral_data(file, form));
+                        pass_messages_on();
+                        return data;
                     })
         .def_static("from_matrix", &data_from_matrix)
         .def_property_readonly("emission",

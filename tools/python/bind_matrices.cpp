@@ -7,6 +7,7 @@
 #include "host/spectral/reradiation.h"
 #include "host/spectral/rounded_grid.h"
 #include "tools/python/bindings.h"
+#include "tools/python/call.h"
 #include "tools/python/values.h"
 
 #include <pybind11/eigen.h>
@@ -34,12 +35,14 @@ MatrixPointer make_matrix(const Eigen::MatrixXd& values, const py::tuple& emissi
     matrix->anti_stokes_allowed = anti_stokes;
     require_plausible_matrix(*matrix, {});
     warn_of_matrix("", *matrix);
+    pass_messages_on();
     return matrix;
 }
 
 MatrixPointer read_matrix(const std::string& file, const TableForm& form) {
     auto matrix = std::make_shared<ReradiationMatrix>(read_reradiation(file, Gaps::Refused, form));
     warn_of_matrix(file, *matrix);
+    pass_messages_on();
     return matrix;
 }
 
@@ -125,6 +128,7 @@ void bind_matrices(py::module_& module) {
              [](const ReradiationMatrix& matrix, const std::string& file) {
                  check_output_file(file);
                  write_reradiation(file, matrix);
+                 pass_messages_on();
              })
         .def_property_readonly(
             "values", [](ReradiationMatrix& matrix) -> Eigen::MatrixXd& { return matrix.values; },

@@ -51,15 +51,6 @@ std::shared_ptr<MessageStore>& message_store() {
     return store;
 }
 
-void pass_messages_on() {
-    const std::vector<LogMessage> messages = message_store()->take();
-    if (messages.empty())
-        return;
-    const py::object logger = py::module_::import("logging").attr("getLogger")("reradiant");
-    for (const LogMessage& message : messages)
-        logger.attr("log")(message.level, "%s", message.text);
-}
-
 /// Work on its thread, and how to wait for its end.
 class Worker {
 public:
@@ -99,6 +90,15 @@ private:
 
 void install_log() {
     spdlog::set_default_logger(std::make_shared<spdlog::logger>("reradiant", message_store()));
+}
+
+void pass_messages_on() {
+    const std::vector<LogMessage> messages = message_store()->take();
+    if (messages.empty())
+        return;
+    const py::object logger = py::module_::import("logging").attr("getLogger")("reradiant");
+    for (const LogMessage& message : messages)
+        logger.attr("log")(message.level, "%s", message.text);
 }
 
 void run_interruptible(const std::function<void(StopFlag)>& work) {
