@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -51,15 +52,16 @@ void print_summary(const ConvergeResult& result, const std::filesystem::path& fo
         const ErrorCurve& curve = method.curve;
         const CurveRow& last = curve.rows.back();
         const BiasFloor floor = bias_floor(curve, result.reference.estimate);
-        fmt::print(
-            "{}: relMSE {:.3g} after {:.3g} s ({} samples a pixel), RMSE falls as samples^{:.3f}, "
-            "1 / (relMSE x seconds) {:.3g}{}{}\n",
-            curve.method.name, last.error.relmse, last.seconds, last.samples,
-            slope_over_samples(curve), efficiency(curve),
-            floor.relmse > 0.0
-                ? fmt::format(", its own bias keeps relMSE above {:.3g}", floor.relmse)
-                : "",
-            method.resumed ? " (kept from an earlier run)" : "");
+        const double slope = slope_over_samples(curve); // not known of one row
+        fmt::print("{}: relMSE {:.3g} after {:.3g} s ({} samples a pixel){}, 1 / (relMSE x "
+                   "seconds) {:.3g}{}{}\n",
+                   curve.method.name, last.error.relmse, last.seconds, last.samples,
+                   std::isfinite(slope) ? fmt::format(", RMSE falls as samples^{:.3f}", slope) : "",
+                   efficiency(curve),
+                   floor.relmse > 0.0
+                       ? fmt::format(", its own bias keeps relMSE above {:.3g}", floor.relmse)
+                       : "",
+                   method.resumed ? " (kept from an earlier run)" : "");
     }
     fmt::print("{}\n", result.interrupted ? "interrupted: run again to go on"
                                           : (folder / "index.html").string());

@@ -72,6 +72,12 @@ void apply_texts(RenderCommand& command, const CommonOptions& common) {
     }
 }
 
+std::string error_text(double relmse) {
+    return std::isfinite(relmse) ? fmt::format("estimated relMSE {:.3g} (noise of about {:.2g} %)",
+                                               relmse, 100.0 * std::sqrt(relmse))
+                                 : "the error is not known: it takes more samples";
+}
+
 /// Three lines: what was made, how good it is, how long it took. The rest for who asks.
 void print_summary(const RenderResult& result, const RenderCommand& command,
                    const CommonOptions& common) {
@@ -80,8 +86,7 @@ void print_summary(const RenderResult& result, const RenderCommand& command,
                command.png.empty() ? "" : fmt::format("; picture: {}", command.png.string()));
     const double pixels =
         static_cast<double>(result.image.width) * static_cast<double>(result.image.height);
-    fmt::print("estimated relMSE {:.3g} (noise of about {:.2g} %){}\n", result.relmse,
-               100.0 * std::sqrt(result.relmse),
+    fmt::print("{}{}\n", error_text(result.relmse),
                command.outside > 0
                    ? fmt::format("; {:.2g} % of the pixels lie outside the display's gamut",
                                  100.0 * static_cast<double>(command.outside) / pixels)
