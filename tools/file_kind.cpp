@@ -81,6 +81,8 @@ FileKind file_kind(const fs::path& file) {
         return FileKind::Matrix;
     if (ending == ".ply" || ending == ".obj")
         return FileKind::Mesh;
+    if (ending == ".ocio")
+        return FileKind::DisplayConfig;
     const TextFormat format = text_format_of(file);
     if (format == TextFormat::JcampDx || format == TextFormat::Cgats || format == TextFormat::Tm27)
         return FileKind::Spectrum;

@@ -16,7 +16,8 @@ enum class FileKind {
     ComplexIndex, ///< nm,n,k of a metal
     Polygons,     ///< regions of `colour --polygons`
     Mesh,
-    Image
+    Image,
+    DisplayConfig ///< of OpenColorIO
 };
 
 /// What a file holds, by its ending and, where that leaves a choice, by its content: a .toml by its

@@ -155,6 +155,7 @@ Json describe(const fs::path& file) {
     case FileKind::Measurement:
     case FileKind::Polygons:
     case FileKind::Mesh:
+    case FileKind::DisplayConfig:
         break;
     }
     throw_input_error({file.string()}, "is no file that is described here",

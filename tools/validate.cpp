@@ -1,4 +1,5 @@
 #include "host/error.h"
+#include "host/film/display_picture.h"
 #include "host/film/exr_channels.h"
 #include "host/film/spectral_image.h"
 #include "host/fit/bispectral_data.h"
@@ -205,6 +206,9 @@ Json validate(const fs::path& file) {
         return validate_mesh(file);
     case FileKind::Image:
         return validate_image(file);
+    case FileKind::DisplayConfig:
+        check_display({.ocio_config = file, .display = {}, .view = {}});
+        return {{"kind", "config of OpenColorIO"}};
     }
     throw_input_error({file.string()}, "is of an unknown kind");
 }
@@ -237,7 +241,7 @@ void add_validate_command(CLI::App& program, CommandContext& context) {
         "FILE", options->file,
         "scene, material, layers, recipe or study (TOML, XML), matrix (CSV, BFC, EXR), "
         "measurement, spectrum (also JCAMP-DX, CGATS, IES TM-27), polygons, mesh (PLY, "
-        "OBJ) or image (EXR, PNG)");
+        "OBJ), image (EXR, PNG) or OpenColorIO config (.ocio)");
     what->add_flag("--reference", options->reference,
                    "print every key of scene and material files, as Markdown");
     command->footer("Examples:\n"

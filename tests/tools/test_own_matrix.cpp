@@ -172,6 +172,11 @@ TEST_F(OwnMatrix, ValidateTakesWhatOtherCommandsTake) {
               0);
     std::filesystem::copy_file(folder / "m.csv", folder / "m.txt");
     put("s.txt", "400\t0,4\n500\t0,5\n");
+    put("c.ocio", "ocio_profile_version: 2\nroles: {default: lin, scene_linear: lin, "
+                  "aces_interchange: lin}\ndisplays:\n  screen:\n    - !<View> {name: raw, "
+                  "colorspace: lin}\ncolorspaces:\n  - !<ColorSpace>\n    name: lin\n");
+    put("broken.ocio", "ocio_profile_version: 2\nroles:\n  scene_linear: nothing\n");
+    expect_failure(2, "validate broken.ocio", "broken.ocio: OpenColorIO refuses this");
     for (const auto& [file, kind] : std::initializer_list<std::pair<std::string, const char*>>{
              {source + "/tools/examples/synth-orange.toml", "recipe of synth"},
              {source + "/tools/examples/studies/varnish.toml", "study"},
@@ -183,7 +188,8 @@ TEST_F(OwnMatrix, ValidateTakesWhatOtherCommandsTake) {
              {"gaps.csv", "re-radiation matrix"},
              {"m.csv", "measurement"},
              {"m.txt", "measurement"},
-             {"s.txt", "spectrum"}})
+             {"s.txt", "spectrum"},
+             {"c.ocio", "config of OpenColorIO"}})
         EXPECT_EQ(json_of("validate " + file)["kind"], kind) << file;
 }
 
