@@ -1,0 +1,78 @@
+"""The map in host/README.md is that of the code, and links of documents lead somewhere."""
+
+import pathlib
+import re
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+HOST = ROOT / "host"
+OWN_FILES = "files of `host` itself"
+DOCUMENTS = [ROOT / "README.md", *(ROOT / folder / "README.md" for folder in ("host", "kernels", "spectra", "tests")),
+             ROOT / "tools/bench/README.md", *sorted((ROOT / "tools/docs").glob("*.md"))]
+
+
+def folders_of_map():
+    """Rows of the first table of host/README.md, from the top: what a row may include stands above it."""
+    rows = re.findall(r"^\| (`[a-z]+`|" + OWN_FILES + r") \|", (HOST / "README.md").read_text(), re.MULTILINE)
+    return ["" if row == OWN_FILES else row.strip("`") for row in rows]
+
+
+def sources():
+    return [path for path in HOST.rglob("*") if path.suffix in (".h", ".cpp")]
+
+
+def folder_of(path):
+    """The folder of host/ that a path below it lies in; empty for files of host/ itself."""
+    return path.parts[0] if len(path.parts) > 1 else ""
+
+
+class Map(unittest.TestCase):
+    def test_every_folder_stands_in_it_once(self):
+        built = sorted(path.name for path in HOST.iterdir() if path.is_dir())
+        self.assertEqual(sorted(folders_of_map()), ["", *built])
+
+    def test_a_folder_includes_only_what_stands_above_it(self):
+        place = {folder: index for index, folder in enumerate(folders_of_map())}
+        wrong = []
+        for path in sources():
+            own = folder_of(path.relative_to(HOST))
+            for included in re.findall(r'^#include "host/([^"]+)"', path.read_text(), re.MULTILINE):
+                other = folder_of(pathlib.PurePath(included))
+                if place[other] > place[own]:
+                    wrong.append(f"{path.relative_to(ROOT)} includes host/{included}")
+        self.assertEqual(wrong, [])
+
+    def test_spectra_and_layers_know_neither_rays_nor_devices(self):
+        foreign = re.compile(r"#include <(embree\d|CL)/")
+        wrong = [str(path) for folder in ("spectral", "layers") for path in (HOST / folder).rglob("*.*")
+                 if foreign.search(path.read_text())]
+        self.assertEqual(wrong, [])
+
+    def test_every_file_that_it_names_is_there(self):
+        text = (HOST / "README.md").read_text()
+        named = re.findall(r"`((?:[a-z_]+/)+[a-z_]+\.(?:h|cpp|cl))`", text)
+        self.assertGreater(len(named), 10)
+        self.assertEqual([name for name in named if not (HOST / name).exists() and not (ROOT / name).exists()], [])
+
+
+class Documents(unittest.TestCase):
+    def test_links_lead_somewhere(self):
+        broken = []
+        for document in DOCUMENTS:
+            for target in re.findall(r"\]\(([^)\s]+)\)", document.read_text()):
+                path, _, heading = target.partition("#")
+                if "://" in target:
+                    continue
+                file = document.parent / path if path else document
+                if not file.exists() or heading and heading not in self.headings_of(file):
+                    broken.append(f"{document.relative_to(ROOT)}: {target}")
+        self.assertEqual(broken, [])
+
+    @staticmethod
+    def headings_of(file):
+        titles = re.findall(r"^#+ (.+)$", file.read_text(), re.MULTILINE)
+        return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+if __name__ == "__main__":
+    unittest.main()
