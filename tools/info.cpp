@@ -11,6 +11,7 @@
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
 #include "tools/outputs.h"
+#include "tools/print_tree.h"
 
 #include <fmt/format.h>
 
@@ -162,21 +163,6 @@ Json describe(const fs::path& file) {
                       "`reradiant validate` checks it and says what it holds");
 }
 
-/// One line a value, groups indented.
-void print(const Json& value, int indent) {
-    for (const auto& [key, entry] : value.items()) {
-        const std::string margin(static_cast<std::size_t>(indent), ' ');
-        const std::string name = value.is_array() ? "-" : key + ":";
-        if (entry.is_structured()) {
-            fmt::print("{}{}\n", margin, name);
-            print(entry, indent + 2);
-        } else {
-            fmt::print("{}{} {}\n", margin, name,
-                       entry.is_string() ? entry.get<std::string>() : entry.dump());
-        }
-    }
-}
-
 } // namespace
 
 void add_info_command(CLI::App& program, CommandContext& context) {
@@ -193,7 +179,7 @@ void add_info_command(CLI::App& program, CommandContext& context) {
         check_outputs(context.common, {}, {*file});
         const Json description = describe(*file);
         write_json(context.common.json, description);
-        print(description, 0);
+        print_tree(description);
     });
 }
 

@@ -19,6 +19,7 @@
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
 #include "tools/outputs.h"
+#include "tools/print_tree.h"
 #include "tools/reference.h"
 
 #include <fmt/format.h>
@@ -213,18 +214,6 @@ Json validate(const fs::path& file) {
     throw_input_error({file.string()}, "is of an unknown kind");
 }
 
-void print(const Json& value, const std::string& margin) {
-    for (const auto& [key, entry] : value.items()) {
-        if (!entry.is_structured())
-            fmt::print("{}{}: {}\n", margin, key,
-                       entry.is_string() ? entry.get<std::string>() : entry.dump());
-        else if (!entry.empty() && key != "warnings") { // those are in the log already
-            fmt::print("{}{}:\n", margin, value.is_array() ? "-" : key);
-            print(entry, margin + "  ");
-        }
-    }
-}
-
 } // namespace
 
 void add_validate_command(CLI::App& program, CommandContext& context) {
@@ -255,7 +244,9 @@ void add_validate_command(CLI::App& program, CommandContext& context) {
         check_outputs(context.common, {}, {options->file});
         const Json result = validate(options->file);
         write_json(context.common.json, result);
-        print(result, "");
+        Json shown = result;
+        shown.erase("warnings"); // the log has them
+        print_tree(shown);
         fmt::print("valid\n");
     });
 }

@@ -2,6 +2,7 @@
 #include "host/scene/spectrum_reader.h"
 #include "host/scene/textured_value.h"
 #include "host/spectral/matrix_io.h"
+#include "host/spectral/matrix_warnings.h"
 
 #include <stdexcept>
 
@@ -13,8 +14,9 @@ namespace {
 
 constexpr std::size_t MAX_FLUOROPHORES = 64;
 
-/// Refuses what breaks energy; logs what was repaired and what breaks the photon balance.
-void check_and_repair(ReradiationMatrix& matrix, const SourcePosition& at, LoadState& state) {
+/// Refuses what breaks energy and logs what was repaired. Returns what else there is to warn of.
+std::vector<std::string> check_and_repair(ReradiationMatrix& matrix, const SourcePosition& at,
+                                          LoadState& state) {
     std::vector<std::string> warnings;
     try {
         const MatrixRepair repair = repair_for_rendering(matrix, warnings);
@@ -23,14 +25,14 @@ void check_and_repair(ReradiationMatrix& matrix, const SourcePosition& at, LoadS
     } catch (const std::invalid_argument& error) {
         throw_input_error(at, error.what());
     }
-    for (const auto& warning : warnings)
-        state.warn(at, warning);
+    return warnings;
 }
 
 void read_matrix(const TableReader& reader, Substrate& substrate, LoadState& state) {
     const SourcePosition at = reader.position_of_key("file");
     ReradiationMatrix matrix = read_reradiation(state.resolve_and_digest(reader.text("file"), at));
-    check_and_repair(matrix, at, state);
+    for (const std::string& warning : check_and_repair(matrix, at, state))
+        state.warn(at, warning);
     substrate.reflectance = matrix.reflectance();
     substrate.matrix = std::move(matrix);
 }
@@ -73,7 +75,12 @@ void read_reradiation_key(const TableReader& table, const std::string& key, Subs
     const WavelengthGrid grid = grid_from_range(300.0, 780.0, 10.0);
     ReradiationMatrix matrix =
         matrix_from_fluorophores(substrate.fluorophores, substrate.reflectance, grid, grid);
-    check_and_repair(matrix, table.position_of_key(key), state);
+    // What was computed here cannot have been misread: of the warnings only that of photons counts.
+    const SourcePosition at = table.position_of_key(key);
+    check_and_repair(matrix, at, state);
+    if (const std::string warning = photon_warning(column_balance(matrix).photons, grid);
+        !warning.empty())
+        state.warn(at, warning);
 }
 
 } // namespace reradiant
