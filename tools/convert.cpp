@@ -36,11 +36,12 @@ bool is_matrix_ending(const std::string& ending) {
 
 void refuse_form_options(const ConvertOptions& options, const std::string& what) {
     if (table_form(options.words) != TableForm{})
-        throw_input_error({options.in.string()},
-                          fmt::format("--rows, --quantity, --scale, --decimal, --kind and "
-                                      "--anti-stokes are of tables of re-radiation, not of {}",
-                                      what),
-                          "leave them out");
+        throw_input_error(
+            {options.in.string()},
+            fmt::format("--rows, --quantity, --scale, --decimal, --kind, "
+                        "--anti-stokes and --geometry are of tables of re-radiation, not of {}",
+                        what),
+            "leave them out");
 }
 
 void refuse_out_options(const ConvertOptions& options) {
@@ -172,8 +173,10 @@ const char* convert(const ConvertOptions& options) {
 int run_convert(const ConvertOptions& options, const CommonOptions& common) {
     if (options.in.empty())
         throw_input_error({}, "IN names no file", "give the file to convert");
-    check_outputs(common, {{"OUT", options.out}});
+    check_outputs(common, {{"OUT", options.out}}, {options.in});
     const char* const kind = convert(options);
+    if (!common.quiet)
+        fmt::print("{}: a {} of {}\n", options.out.string(), kind, options.in.string());
     write_json(common.json,
                {{"kind", kind}, {"in", options.in.string()}, {"out", options.out.string()}});
     return 0;
@@ -215,6 +218,10 @@ void add_table_options(CLI::App& command, ConvertOptions& options) {
     command
         .add_flag("--anti-stokes", options.words.anti_stokes,
                   "emission below its excitation is real, not noise")
+        ->group(group);
+    command
+        .add_option("--geometry", options.words.geometry,
+                    "illumination/viewing of the instrument, as in 45/0 (`fit --stack` needs it)")
         ->group(group);
     command.add_option("--out-rows", options.out_rows, "of a matrix written as CSV: emission")
         ->check(choice({"emission", "excitation", "rows-emission", "rows-excitation"}));

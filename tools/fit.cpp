@@ -7,6 +7,7 @@
 #include "host/fit/solve_journal.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
+#include "host/scene/named_files.h"
 #include "host/scene/stack_file.h"
 #include "host/spectral/matrix_io.h"
 #include "tools/command.h"
@@ -68,17 +69,22 @@ FitSettings settings_of(const FitOptions& options, const CommonOptions& common) 
 
 void print_summary(const FitOptions& options, const FitResult& result) {
     fmt::print(
-        "{}: model {}, {} terms, {} bytes, relative RMSE {:.4f}, {} iterations in {:.2f} s\n",
-        options.output.string(), fit_model_name(result.model), result.rank, result.bytes,
-        result.relative_rmse, result.trace.iterations, result.seconds);
+        "{}: model {}, {} term{}, {} bytes, relative RMSE {:.4f}, {} iterations in {:.2f} s\n",
+        options.output.string(), fit_model_name(result.model), result.rank,
+        result.rank == 1 ? "" : "s", result.bytes, result.relative_rmse, result.trace.iterations,
+        result.seconds);
+    bool has_yields = false;
     for (std::size_t k = 0; k < result.quantum_yield.size(); ++k) {
         const QuantumYield& yield = result.quantum_yield[k];
-        if (std::isfinite(yield.value))
-            fmt::print("quantum yield {}: {:.3f} ({:.3f} to {:.3f}) of all photons that the "
-                       "sample absorbs; of those that the dye itself absorbs it is as high or "
-                       "higher\n",
-                       k + 1, yield.value, yield.low, yield.high);
+        if (!std::isfinite(yield.value))
+            continue;
+        fmt::print("quantum yield {}: {:.3f} ({:.3f} to {:.3f}) of all photons that the sample "
+                   "absorbs\n",
+                   k + 1, yield.value, yield.low, yield.high);
+        has_yields = true;
     }
+    if (has_yields)
+        fmt::print("of the photons that a dye itself absorbs, its yield is as high or higher\n");
     fmt::print("the data determine {} of the model's {} numbers\n", result.covariance_rank,
                result.parameters);
     if (result.stack)
@@ -161,12 +167,13 @@ std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings set
 }
 
 int run_fit(const FitOptions& options, const CommonOptions& common) {
-    check_outputs(common,
-                  {{"-o", options.output, {".csv", ".exr", ".bfc"}, true},
-                   {"--report", options.report, {".html"}},
-                   {"--model-file", options.model_file, {".toml"}}},
-                  {options.data, options.stack});
+    const std::vector<NamedOutput> outputs = {
+        {"-o", options.output, {".csv", ".exr", ".bfc"}, true},
+        {"--report", options.report, {".html"}},
+        {"--model-file", options.model_file, {".toml"}}};
+    check_outputs(common, outputs, {options.data, options.stack});
     const FitSettings settings = settings_of(options, common);
+    check_outputs(common, outputs, named_files());
     const BispectralData data = read_bispectral_data(options.data);
     check_fit_memory(data, settings, options.memory_limit_bytes);
     const std::optional<FitResult> fitted = fit_and_keep(options, settings, data, common.quiet);

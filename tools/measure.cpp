@@ -5,6 +5,7 @@
 #include "host/paths.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
+#include "host/scene/named_files.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
@@ -132,11 +133,13 @@ std::optional<Measurement> measure_and_keep(const MeasureOptions& options, const
 
 /// Errors of meaning have no place of their own: they are placed at the material's file.
 std::optional<Measurement> measure_file(const MeasureOptions& options,
-                                        const MeasureRequest& request, bool quiet) {
+                                        const MeasureRequest& request,
+                                        const CommonOptions& common) {
     const std::filesystem::path file = material_file(options);
     const Material material = load_material(file);
+    check_outputs(common, {{"-o", options.output, {".csv"}}}, named_files());
     try {
-        return measure_and_keep(options, material, request, quiet);
+        return measure_and_keep(options, material, request, common.quiet);
     } catch (const Error& error) {
         if (error.kind() == Error::Kind::Input && error.position().file.empty()) {
             throw_input_error({file.string()}, error.what());
@@ -165,7 +168,7 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
         threads.emplace(tbb::global_control::max_allowed_parallelism,
                         static_cast<std::size_t>(common.threads));
     }
-    const std::optional<Measurement> measured = measure_file(options, request, common.quiet);
+    const std::optional<Measurement> measured = measure_file(options, request, common);
     if (!measured)
         return exit_interrupted;
     const Measurement& measurement = *measured;

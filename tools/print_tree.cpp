@@ -20,6 +20,8 @@ std::string text_of(const Json& value) {
 void print(const Json& value, const std::string& margin) {
     for (const auto& [key, entry] : value.items()) {
         const std::string name = value.is_array() ? "-" : key + ":";
+        if (entry == "")
+            continue;
         if (!entry.is_structured())
             fmt::print("{}{} {}\n", margin, name, text_of(entry));
         else if (!entry.empty()) {

@@ -9,6 +9,7 @@
 #include "host/render/team_render.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
+#include "host/scene/named_files.h"
 #include "host/scene/scene.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
@@ -88,7 +89,7 @@ void print_summary(const RenderResult& result, const RenderCommand& command,
         static_cast<double>(result.image.width) * static_cast<double>(result.image.height);
     fmt::print("{}{}\n", error_text(result.relmse),
                command.outside > 0
-                   ? fmt::format("; {:.2g} % of the pixels lie outside the display's gamut",
+                   ? fmt::format("; {:.3g} % of the pixels lie outside the display's gamut",
                                  100.0 * static_cast<double>(command.outside) / pixels)
                    : "");
     const double rendering = result.trace_seconds + result.shade_seconds;
@@ -162,13 +163,6 @@ void write_results(RenderCommand& command, const RenderResult& result) {
         command.outside = write_display_png(command.png, result.image, command.display);
 }
 
-std::vector<std::filesystem::path> images_of(const Scene& scene) {
-    std::vector<std::filesystem::path> files;
-    for (const Image& image : scene.images)
-        files.push_back(image.file);
-    return files;
-}
-
 int run_render(RenderCommand command, const CommandContext& context) {
     CommonOptions common = context.common;
     const std::unique_ptr<Team> team = join_team(common);
@@ -180,7 +174,7 @@ int run_render(RenderCommand command, const CommandContext& context) {
     if (command.shows_a_display())
         check_display(command.display);
     const Scene scene = load_scene(command.scene);
-    check_outputs(common, outputs, images_of(scene));
+    check_outputs(common, outputs, named_files());
     prepare_opencl(common.threads);
     const Device device(common.device);
     command.render.checkpoint = checkpoint_beside(command.output);

@@ -1,6 +1,7 @@
 #include "host/fit/synth.h"
 #include "host/error.h"
 #include "host/report/json_file.h"
+#include "host/scene/named_files.h"
 #include "host/spectral/matrix_io.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
@@ -53,15 +54,16 @@ Json describe(const SynthOptions& options, const SynthRecipe& recipe, const Synt
 }
 
 int run_synth(const SynthOptions& options, const CommonOptions& common) {
-    check_outputs(common,
-                  {{"-o",
-                    options.output,
-                    {".csv"},
-                    true,
-                    "`reradiant convert` makes other formats of a bare matrix"},
-                   {"--truth", options.truth, {".csv", ".exr", ".bfc"}, true}},
-                  {options.recipe});
+    const std::vector<NamedOutput> outputs = {
+        {"-o",
+         options.output,
+         {".csv"},
+         true,
+         "`reradiant convert` makes other formats of a bare matrix"},
+        {"--truth", options.truth, {".csv", ".exr", ".bfc"}, true}};
+    check_outputs(common, outputs, {options.recipe});
     const SynthRecipe recipe = read_synth_recipe(options.recipe);
+    check_outputs(common, outputs, named_files());
     const SynthResult result = synthesise_file(recipe, options.recipe, common.seed);
     const ReradiationMatrix truth = synth_truth(recipe);
     write_bispectral_data(options.output, result.data);

@@ -1,6 +1,7 @@
 #include "host/scene/load_state.h"
 
 #include "host/paths.h"
+#include "host/scene/named_files.h"
 
 #include <algorithm>
 #include <fstream>
@@ -62,8 +63,10 @@ fs::path LoadState::resolve(const std::string& name, const SourcePosition& at) c
     if (name.empty())
         throw_input_error(at, "the file name is empty", "give a file name");
     const fs::path beside = fs::path(at.file).parent_path() / given;
-    if (is_file(beside))
+    if (is_file(beside)) {
+        remember_named_file(beside);
         return beside;
+    }
     std::vector<std::string> tried{beside.string()};
     if (given == given.filename()) {
         for (const fs::path& folder : spectra_folders()) {

@@ -85,9 +85,15 @@ std::vector<Piece> pieces_between(std::string_view text, std::size_t from, std::
 /// The cells of a line that a comma within them does not separate; nothing where it may.
 std::vector<Piece> cells_of_line(std::string_view text, std::size_t from, std::size_t to) {
     const std::string_view line = text.substr(from, to - from);
-    for (const char separator : {';', '\t'})
-        if (line.find(separator) != none)
-            return pieces_between(text, from, to, separator);
+    for (const char separator : {';', '\t'}) {
+        if (line.find(separator) == none)
+            continue;
+        std::vector<Piece> pieces = pieces_between(text, from, to, separator);
+        const auto filled = std::count_if(pieces.begin(), pieces.end(),
+                                          [](const Piece& piece) { return !piece.text.empty(); });
+        if (filled > 1) // one alone at the end of a line separates nothing
+            return pieces;
+    }
     if (line.find('"') != none) // then what commas separate holds none but between the marks
         return pieces_between(text, from, to, ',');
     std::vector<Piece> pieces = pieces_between(text, from, to, ' ');
@@ -191,7 +197,8 @@ std::string write_decimal_points(std::string& text, DecimalMark mark, const std:
                            numbers.point(), numbers.point_at().line);
     else if (!numbers.is_decisive())
         return fmt::format("the comma in '{}' may be a decimal mark or part thousands: write "
-                           "numbers like 0.25, or say which by `reradiant convert` with --decimal",
+                           "numbers like 0.25, or of a re-radiation matrix say which by `reradiant "
+                           "convert` with --decimal",
                            numbers.first());
     for (const std::size_t comma : numbers.commas())
         text[comma] = '.';

@@ -58,7 +58,7 @@ WavelengthGrid grid_from_centres(const std::vector<double>& centres_nm, double s
     for (int band = 1; band < count; ++band) {
         const double centre = centres_nm[static_cast<std::size_t>(band)];
         require(std::abs(centre - grid.centre_nm(band)) <= tolerance_in_steps * grid.step_nm,
-                fmt::format("wavelength {} ({} nm) is not in equal steps of {} nm from {} nm",
+                fmt::format("wavelength {} ({} nm) is not in equal steps of {:.9g} nm from {} nm",
                             band + 1, centre, grid.step_nm, grid.from_nm));
     }
     return grid;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <optional>
 #include <utility>
 
@@ -25,11 +26,10 @@ public:
     ReradiationMatrix read() {
         const std::vector<TextToken> headings = find_headings();
         const SourcePosition at = reader_.position(headings[0]);
-        if (!is_declared())
-            refuse_undeclared(headings, at);
         const std::optional<LongColumns> columns = long_columns(reader_, headings);
-        if (!columns)
-            read_value_unit(reader_, headings[0], header_);
+        if (!is_declared(columns.has_value()))
+            refuse_undeclared(headings, columns, at);
+        read_value_unit(reader_, headings[columns ? columns->value : 0], header_);
         CellReader cells(reader_, header_,
                          columns ? WavelengthUnit{} : axis_unit(reader_, headings));
         CsvBody body;
@@ -51,9 +51,10 @@ public:
     }
 
 private:
-    bool is_declared() const {
+    /// The headings of the long form say which wavelength is which.
+    bool is_declared(bool is_long) const {
         return (header_.quantity || told_.quantity) &&
-               (header_.rows_are_emission || told_.rows_are_emission);
+               (is_long || header_.rows_are_emission || told_.rows_are_emission);
     }
     bool rows_are_emission() const {
         return told_.rows_are_emission ? *told_.rows_are_emission : *header_.rows_are_emission;
@@ -86,23 +87,29 @@ private:
             return cells;
         }
         throw_input_error(reader_.end_position(), "no matrix in this file",
-                          "see 'Re-radiation CSV' in the README");
+                          "spectra/README.md shows what a table of re-radiation looks like");
     }
 
     /// What the values say of the declaration that lacks goes into the error.
     [[noreturn]] void refuse_undeclared(const std::vector<TextToken>& headings,
+                                        const std::optional<LongColumns>& columns,
                                         const SourcePosition& at) {
+        TableForm told = told_;
+        if (columns)
+            header_.rows_are_emission = true;
+        if (header_.factor && !told.scale)
+            told.scale = header_.factor;
+        read_value_unit(reader_, headings[columns ? columns->value : 0], header_);
         UndeclaredTable table{.file = reader_.name(),
                               .quantity = told_.quantity ? told_.quantity : header_.quantity,
                               .rows_are_emission = told_.rows_are_emission
                                                        ? told_.rows_are_emission
                                                        : header_.rows_are_emission,
-                              .told = told_,
+                              .told = told,
                               .is_scaled = told_.scale || header_.is_percent || header_.factor,
                               .is_measured = header_.kind.has_value(),
                               .needs_decimal = !reader_.decimal_doubt().empty()};
         try {
-            const std::optional<LongColumns> columns = long_columns(reader_, headings);
             CellReader cells(reader_, header_,
                              columns ? WavelengthUnit{} : axis_unit(reader_, headings));
             CsvBody body;
@@ -116,7 +123,9 @@ private:
             table.is_scaled = table.is_scaled || header_.is_percent || header_.factor;
             table.has_percent_signs = cells.signs().some;
             table.as_rows_emission = assemble(std::move(body));
-        } catch (const Error&) { // the values say nothing then; what is wrong with them comes next
+        } catch (const Error&) { // but for decimals, what the command below would refuse as well
+            if (!table.needs_decimal)
+                throw;
         }
         refuse_undeclared_table(table, at);
     }
@@ -164,11 +173,18 @@ private:
         matrix.kind = header_.kind.value_or(MatrixKind::Model);
         matrix.anti_stokes_allowed = header_.anti_stokes_allowed.value_or(false);
         matrix.geometry = header_.geometry.value_or("");
-        if (header_.is_percent.value_or(false) && !told_.scale)
-            matrix.values /= 100.0; // rounds once, where 0.01 would twice
-        else
-            matrix.values *= told_.scale.value_or(1.0);
+        scale(matrix.values, told_.scale.value_or(header_.is_percent.value_or(false) ? 0.01 : 1.0));
         return matrix;
+    }
+
+    /// Of percent and permille 15 digits are kept, so that 0.47 % becomes 0.0047 as it would be
+    /// written: neither a product nor a quotient of doubles does that.
+    static void scale(Eigen::MatrixXd& values, double factor) {
+        values *= factor;
+        if (factor == 0.01 || factor == 0.001)
+            values = values.unaryExpr([](double value) {
+                return std::strtod(fmt::format("{:.15g}", value).c_str(), nullptr);
+            });
     }
 
     /// Unit of both axes of the wide form, by the heading of its first column. That may be any

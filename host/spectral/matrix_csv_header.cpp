@@ -32,8 +32,9 @@ void set_once(const TextReader& reader, const HeaderEntry& entry, CsvHeader& hea
 }
 
 double step_value(const TextReader& reader, TextToken value) {
-    value.text = first_word(value.text);
-    return reader.wavelength_nm(value);
+    value.text =
+        value.text.substr(0, std::min(value.text.find_first_of(" \t;("), value.text.size()));
+    return reader.wavelength_nm(value); // refuses a decimal comma rather than cutting it off
 }
 
 /// What a value's unit may be called where it is 1. The unit of the axes says nothing of values.
@@ -103,6 +104,9 @@ void refuse_misspelt(const TextReader& reader, const HeaderEntry& entry) {
         refuse(("orientation: rows-" + value).c_str());
     if (is_one_of(std::array{"scale", "values"}, entry.name) && names_percent(value))
         refuse("unit: percent");
+    if (entry.name == "decimal" && (value == "comma" || value == "point"))
+        throw_input_error(reader.position(entry.key), "the key 'decimal' is not known",
+                          fmt::format("leave the line out and convert with --decimal {}", value));
     for (const char* key : known_keys)
         if (is_nearly(entry.name, key))
             throw_input_error(reader.position(entry.key),
@@ -221,6 +225,7 @@ void add_told(const TextReader& reader, CsvHeader& header, const TableForm& told
     agree(header, "quantity", &CsvHeader::quantity, told.quantity);
     agree(header, "orientation", &CsvHeader::rows_are_emission, told.rows_are_emission);
     agree(header, "kind", &CsvHeader::kind, told.kind);
+    agree(header, "geometry", &CsvHeader::geometry, told.geometry);
     if (told.anti_stokes_allowed)
         agree(header, "anti-stokes", &CsvHeader::anti_stokes_allowed, std::optional(true));
     if (told.scale && (header.is_percent || header.factor) && header.scale() != *told.scale)
@@ -235,6 +240,8 @@ void add_told(const TextReader& reader, CsvHeader& header, const TableForm& told
         header.rows_are_emission = told.rows_are_emission;
     if (told.kind)
         header.kind = told.kind;
+    if (told.geometry)
+        header.geometry = told.geometry;
     if (told.anti_stokes_allowed)
         header.anti_stokes_allowed = true;
 }

@@ -105,10 +105,16 @@ WideTable read_wide(CellReader& cells, const std::vector<TextToken>& headings) {
     std::vector<double> values;
     for (auto tokens = cells.next(headings.size()); !tokens.empty();
          tokens = cells.next(headings.size())) {
-        if (tokens.size() != headings.size())
-            throw_input_error(reader.position(tokens.back()),
-                              fmt::format("{} values in this row", tokens.size() - 1),
-                              fmt::format("the headings name {}", table.columns.size()));
+        if (tokens.size() != headings.size()) {
+            const bool has_twice = tokens.size() + 1 >= 2 * table.columns.size();
+            throw_input_error(
+                reader.position(tokens.back()),
+                fmt::format("{} values in this row", tokens.size() - 1),
+                fmt::format("the headings name {}{}", table.columns.size(),
+                            has_twice ? "; where commas part the cells and stand for decimal "
+                                        "points, too, save the sheet with semicolons or tabs"
+                                      : ""));
+        }
         table.rows.push_back(cells.wavelength(tokens[0]));
         require_matrix_size(table.rows.back().position, table.rows.size(), table.columns.size());
         for (std::size_t k = 1; k < tokens.size(); ++k) {

@@ -49,7 +49,7 @@ void write_reradiation_csv(const std::filesystem::path& file, const ReradiationM
         text += fmt::format("{}", rows.centre_nm(row));
         // fmt prints the shortest text that reads back as the same double.
         for (int column = 0; column < columns.count; ++column)
-            text += fmt::format(",{}", table(row, column));
+            text += fmt::format(",{}", table(row, column) + 0.0); // 0 rather than -0
         text += '\n';
     }
     write_text_atomically(file, text);

@@ -58,11 +58,31 @@ bool is_title(const std::vector<TextToken>& cells, const std::vector<TextToken>&
            (others > 0 && next.size() != cells.size()) || others > numbers;
 }
 
+/// Digits parted by one kind of sign: 28.06.1999, 2026-06-28, 6/28/99, 13:57.
+bool is_date_or_time(std::string_view text) {
+    constexpr std::string_view digits = "0123456789";
+    const auto first = text.find_first_not_of(digits);
+    if (first == 0 || first == std::string_view::npos ||
+        std::string_view(".-/:").find(text[first]) == std::string_view::npos)
+        return false;
+    const std::string of_sign = std::string(digits) + text[first];
+    return text.find_first_not_of(of_sign) == std::string_view::npos &&
+           std::count(text.begin(), text.end(), text[first]) >= (text[first] == ':' ? 1 : 2) &&
+           text.back() != text[first];
+}
+
+/// A title may begin with a date, or with the numbers of one. The table's rows are longer then.
+bool is_dated_title(const std::vector<TextToken>& cells, const std::vector<TextToken>& next) {
+    return is_date_or_time(cells[0].text) ||
+           (cells.size() <= 3 && next.size() > fewest_bands && next.size() > cells.size() + 1);
+}
+
 } // namespace
 
 LongRole long_role(std::string_view heading) {
     std::string name = lower_case(heading);
-    for (const std::string_view unit : {"(nm)", "[nm]", "/nm", "_nm", " nm"})
+    for (const std::string_view unit :
+         {"(nm)", "[nm]", "/nm", "_nm", " nm", "(%)", "[%]", "/%", " %"})
         if (name.ends_with(unit))
             name.erase(name.size() - unit.size());
     name.erase(std::min(name.find_last_not_of(' ') + 1, name.size()));
@@ -112,11 +132,13 @@ HeadingKind heading_kind(std::vector<TextToken> cells, std::vector<TextToken> ne
         cells.begin(), cells.end(), [](const TextToken& cell) { return number_of(cell) != 0.0; });
     if (all_numbers && next.size() == cells.size() + 1)
         return HeadingKind::HeadingsWithoutCorner;
-    // Programs without text in their tables write 0 into the corner.
-    if (cells[0].text == "0" && are_bands(cells, 1))
+    // Programs without text in their tables write 0 into the corner, as 0.0 or 0.000e+00, too.
+    const bool is_zero = begins_as_number(cells[0].text) && is_number(cells[0].text) &&
+                         number_at(cells[0].text, {}) == 0.0;
+    if (is_zero && are_bands(cells, 1))
         return HeadingKind::Headings;
     if (begins_as_number(cells[0].text))
-        return HeadingKind::Row;
+        return is_dated_title(cells, next) ? HeadingKind::Title : HeadingKind::Row;
     if (cells.size() == 1 && names_wavelengths(cells[0].text))
         return HeadingKind::Headings; // without columns, which is said of it
     return is_title(cells, next) ? HeadingKind::Title : HeadingKind::Headings;

@@ -22,13 +22,8 @@ struct Side {
         squares += energy * energy;
         ++entries;
     }
-    /// Standard deviation of an entry about the mean of all.
-    double deviation() const {
-        if (entries == 0)
-            return 0.0;
-        const double mean = sum / entries;
-        return std::sqrt(std::max(0.0, squares / entries - mean * mean));
-    }
+    double mean() const { return entries == 0 ? 0.0 : sum / entries; }
+    double rms() const { return entries == 0 ? 0.0 : std::sqrt(squares / entries); }
 };
 
 double finite_or_zero(double value) {
@@ -71,11 +66,11 @@ MatrixEvidence evidence_of(const ReradiationMatrix& matrix) {
     }
     evidence.stokes = std::max(above.sum, 0.0);
     evidence.anti_stokes = std::max(below.sum, 0.0);
-    // The side with less light shows the noise of both.
+    // The side with less light shows the noise of both, and the offset that clipped noise has.
     const auto [less, more] =
         above.sum < below.sum ? std::pair{&above, &below} : std::pair{&below, &above};
-    evidence.stands_out =
-        more->sum > noise_deviations * less->deviation() * std::sqrt(more->entries);
+    evidence.stands_out = more->sum - std::max(less->mean(), 0.0) * more->entries >
+                          noise_deviations * less->rms() * std::sqrt(more->entries);
     return evidence;
 }
 

@@ -32,6 +32,10 @@ ReradiationMatrix exchanged(const ReradiationMatrix& matrix);
 /// scale.
 constexpr double fewest_photons = 0.1, most_photons = 1.2;
 
+/// From this share of its fluorescence on, a side of the diagonal is the emission: measured samples
+/// have 92 to 100 % of it on that side.
+constexpr double emission_share = 0.75;
+
 inline bool has_usual_photons(double photons) {
     return photons >= fewest_photons && photons <= most_photons;
 }

@@ -17,11 +17,10 @@ constexpr double balance_slack = 1e-6;
 /// of which is below this; black paints return some percent.
 constexpr double darkest_sample = 0.01;
 
-/// Measured samples have 0 to 8 % of their fluorescence on this side, by noise; with rows and
-/// columns exchanged that becomes 92 to 100 %.
+/// Measured samples have 0 to 8 % of their fluorescence on this side, by noise.
 bool is_exchanged(const ReradiationMatrix& matrix, const MatrixEvidence& evidence) {
     return !matrix.anti_stokes_allowed && evidence.stands_out &&
-           evidence.anti_stokes > evidence.stokes;
+           evidence.anti_stokes_share() > emission_share;
 }
 
 std::string strength_warning(const ReradiationMatrix& matrix, const MatrixEvidence& evidence) {
@@ -31,8 +30,9 @@ std::string strength_warning(const ReradiationMatrix& matrix, const MatrixEviden
         evidence.photons_nm, evidence.photons);
     if (evidence.photons > most_photons)
         return was_taken_as_density(evidence, step_nm)
-                   ? finding + ", which cannot be; the values are probably per band and were taken "
-                               "as per nm: declare '# quantity: per-band'"
+                   ? finding +
+                         ", which cannot be; if the values are per band and were taken as per "
+                         "nm, declare '# quantity: per-band', else check their scale"
                    : finding + ", which cannot be; check the unit and the scale of the values";
     if (evidence.stands_out && evidence.photons < fewest_photons &&
         has_usual_photons(evidence.photons * step_nm))
@@ -62,7 +62,7 @@ std::vector<std::string> misreading_warnings(const ReradiationMatrix& matrix) {
     if (exchange) {
         warnings.push_back(fmt::format(
             "{:.0f} % of the fluorescence lies below its excitation (anti-Stokes): rows and "
-            "columns are probably exchanged; declare the other '# orientation'",
+            "columns are probably exchanged; declare the other '# orientation' (--rows)",
             100.0 * evidence.anti_stokes_share()));
         right = exchanged(matrix);
         evidence = evidence_of(right);

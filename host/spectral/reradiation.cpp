@@ -170,13 +170,13 @@ ColumnBalance column_balance(const ReradiationMatrix& matrix) {
 std::string MatrixRepair::text() const {
     std::string result;
     if (negative_entries > 0)
-        result = fmt::format("{} negative entries set to zero ({:.3g} % of the energy)",
+        result = fmt::format("{} negative entries count as zero ({:.3g} % of the energy)",
                              negative_entries, 100.0 * negative_energy);
     if (anti_stokes_entries > 0)
-        result += fmt::format("{}{} anti-Stokes entries set to zero ({:.3g} % of the energy)",
+        result += fmt::format("{}{} anti-Stokes entries count as zero ({:.3g} % of the energy)",
                               result.empty() ? "" : ", ", anti_stokes_entries,
                               100.0 * anti_stokes_energy);
-    return result;
+    return result.empty() ? result : "in scenes " + result;
 }
 
 MatrixRepair repair_for_rendering(ReradiationMatrix& matrix, std::vector<std::string>& warnings) {

@@ -60,6 +60,8 @@ TableForm table_form(const TableWords& words) {
         form.kind = is_first("kind", words.kind, "measured", "model") ? MatrixKind::Measured
                                                                       : MatrixKind::Model;
     form.anti_stokes_allowed = words.anti_stokes;
+    if (!words.geometry.empty())
+        form.geometry = words.geometry;
     return form;
 }
 

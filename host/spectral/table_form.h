@@ -16,6 +16,7 @@ struct TableForm {
     std::optional<double> scale; ///< values are multiplied by it: 0.01 for percent
     std::optional<MatrixKind> kind;
     bool anti_stokes_allowed = false;
+    std::optional<std::string> geometry; ///< illumination/viewing, as in 45/0
     DecimalMark decimal = DecimalMark::Automatic;
 
     bool operator==(const TableForm&) const = default;
@@ -29,6 +30,7 @@ struct TableWords {
     std::string decimal = {};  ///< comma, point
     std::string kind = {};     ///< measured, model
     bool anti_stokes = false;
+    std::string geometry = {}; ///< 45/0, 8/d and so on
 };
 
 /// Input Error for other words.

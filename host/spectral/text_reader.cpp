@@ -172,7 +172,8 @@ double number_at(std::string_view text, const SourcePosition& at, const std::str
         throw_input_error(at,
                           text.empty() ? std::string("a value is missing")
                                        : fmt::format("'{}' says that a value is missing", text),
-                          "give the value; only measured data that are fitted may have gaps");
+                          "give the value; only measured data that are fitted may have gaps, which "
+                          "`reradiant fit` fills");
     double value = 0.0;
     if (!parse(text, value))
         throw_input_error(at, fmt::format("'{}' is not a number", shortened(text)),

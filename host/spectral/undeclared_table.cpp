@@ -22,10 +22,11 @@ std::string quoted(const std::string& file) {
         return std::isalnum(c) != 0 || c >= 0x80 ||
                std::string_view("._-/+,").find(static_cast<char>(c)) != std::string_view::npos;
     });
+    const std::string name = file.starts_with('-') ? "./" + file : file; // no option
     if (is_plain)
-        return file;
+        return name;
     std::string text = "'";
-    for (const char c : file)
+    for (const char c : name)
         text += c == '\'' ? "'\\''" : std::string(1, c);
     return text + "'";
 }
@@ -60,8 +61,12 @@ public:
             words.push_back("--scale " + scale_);
         if (table_.needs_decimal || table_.told.decimal == DecimalMark::Comma)
             words.push_back("--decimal comma");
-        if (is_noisy_ && !table_.is_measured)
+        if ((is_noisy_ && !table_.is_measured) || table_.told.kind == MatrixKind::Measured)
             words.push_back("--kind measured");
+        if (table_.told.anti_stokes_allowed)
+            words.push_back("--anti-stokes");
+        if (table_.told.geometry)
+            words.push_back("--geometry " + quoted(*table_.told.geometry));
         return fmt::format("{}", fmt::join(words, " "));
     }
 
@@ -120,8 +125,9 @@ private:
     /// Turns the matrix as its fluorescence says.
     void guess_orientation() {
         evidence_ = evidence_of(matrix_);
-        if (!table_.rows_are_emission && evidence_.stands_out) {
-            const double share = evidence_.anti_stokes_share();
+        const double share = evidence_.anti_stokes_share();
+        const bool is_clear = std::max(share, 1.0 - share) > emission_share;
+        if (!table_.rows_are_emission && evidence_.stands_out && is_clear) {
             rows_ = share < 0.5;
             sentences_.push_back(fmt::format(
                 "{:.0f} % of the fluorescence would be anti-Stokes if rows were {}, so probably "

@@ -4,6 +4,7 @@
 #include "tests/spectral/scratch_folder.h"
 
 #include <cmath>
+#include <random>
 
 using namespace reradiant;
 
@@ -77,6 +78,21 @@ TEST(MatrixWarnings, WhatDoesNotFluoresceIsQuiet) {
                 if (o != i)
                     matrix.values(o, i) = sign * 1e-3 * std::sin(7.3 * o * o + 3.1 * i * i + o * i);
         EXPECT_TRUE(matrix_warnings(matrix).empty()) << matrix_warnings(matrix)[0];
+    }
+}
+
+/// Instruments cut off what is negative: then noise has a mean, the same on both sides.
+TEST(MatrixWarnings, NoiseThatWasCutOffIsNoEmission) {
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<double> noise(0.0, 1e-3);
+        ReradiationMatrix matrix{{400, 10, 31}, {400, 10, 31}, Eigen::MatrixXd::Zero(31, 31)};
+        matrix.kind = MatrixKind::Measured;
+        matrix.values = matrix.values.unaryExpr([&](double) { return std::abs(noise(random)); });
+        matrix.values.diagonal().setConstant(0.8);
+        EXPECT_TRUE(matrix_warnings(matrix).empty()) << seed << ": " << matrix_warnings(matrix)[0];
+        matrix.values = matrix.values.cwiseMax(5e-4);
+        EXPECT_TRUE(matrix_warnings(matrix).empty()) << seed << ": " << matrix_warnings(matrix)[0];
     }
 }
 

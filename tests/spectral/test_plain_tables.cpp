@@ -206,3 +206,40 @@ TEST_F(PlainTables, AnUndeclaredTableIsToldTheCommandThatDeclaresIt) {
                              "400 0.1\n410 0.2\n"})
         EXPECT_FALSE(holds_reradiation(write("s.csv", text))) << text;
 }
+
+TEST_F(PlainTables, DatesAndNumbersAboveTheTableAreTitles) {
+    const std::string sheet = "nm;400;410;420\n400;0,25;0;0\n410;0,02;0,5;0\n420;0,125;0,03;0,75\n";
+    for (const char* title : {"28.06.1999", "28.06.1999;13:57;1", "2026-06-28;Sample 3", "13:57",
+                              "28.06.1999;;;", "6/28/99"})
+        expect_same(std::string(title) + "\n" + sheet, rows_emission);
+    // An empty cell behind the last number separates nothing.
+    const std::string spectrum = "400,0\t\n500,5\t\n";
+    EXPECT_EQ(read_spectrum(write("s.csv", spectrum))(500.0), 5.0);
+}
+
+TEST_F(PlainTables, PercentBecomesTheNearestNumber) {
+    const std::string percent = "nm,400,410\n400,47.1,0\n410,0.47,58\n";
+    TableWords words = rows_emission;
+    words.scale = "percent";
+    EXPECT_EQ(read(percent, words).values(1, 0), 0.0047);
+    words.scale = "permille";
+    EXPECT_EQ(read(percent, words).values(1, 0), 0.00047);
+}
+
+TEST_F(PlainTables, TheLongFormNeedsNoOrientationAndMayStateItsUnit) {
+    const std::string text = "Excitation (nm);Emission (nm);Value (%)\n400;400;25\n400;410;2\n"
+                             "400;420;12,5\n410;410;50\n410;420;3\n420;420;75\n410;400;0\n"
+                             "420;400;0\n420;410;0\n";
+    expect_same(text, {.quantity = "per-band"});
+    refused(text, "the quantity of the table is not declared");
+}
+
+TEST_F(PlainTables, WhatTheProposedCommandWouldRefuseIsSaidAtOnce) {
+    refused("nm,400,410,420\n400,0,25,0,0,0,0\n410,0,02,0,5,0,0\n420,0,12,0,03,0,75\n",
+            "save the sheet with semicolons or tabs");
+    // What was said already is part of the proposal.
+    TableWords words{.scale = "0.01"};
+    words.anti_stokes = true;
+    words.geometry = "45/0";
+    refused(points, "--scale 0.01 --anti-stokes --geometry 45/0", words);
+}

@@ -136,7 +136,7 @@ TEST_F(FitCommand, FewEntriesWithoutNoiseAreFluorescence) {
                    "330,0.05,0.1,0.2,0.4\n");
     const ProgramResult fitted = run("fit few.csv -o out.csv");
     EXPECT_EQ(fitted.exit_code, 0) << fitted.errors;
-    EXPECT_NE(fitted.output.find("1 terms"), std::string::npos) << fitted.output;
+    EXPECT_NE(fitted.output.find("1 term,"), std::string::npos) << fitted.output;
 }
 
 TEST_F(FitCommand, BadInputIsRefusedAndNothingIsWritten) {

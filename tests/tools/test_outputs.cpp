@@ -249,6 +249,25 @@ TEST_F(Outputs, WhatIsReadIsNotWrittenOver) {
         EXPECT_EQ(run(command).exit_code, 2) << command;
 }
 
+TEST_F(Outputs, WhatAFileNamesIsReadToo) {
+    put("m.csv", "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
+                 "nm,400,410\n400,0.5,0\n410,0.1,0.5\n");
+    put("dark.csv", "nm,value\n300,0.2\n780,0.2\n");
+    put("dyed.toml", "[material]\nname = \"m\"\n  [material.substrate]\n  type = \"lambert\"\n"
+                     "  reradiation = { file = \"m.csv\" }\n");
+    put("recipe.toml",
+        "emission_nm = { from = 400, to = 700, step = 20 }\n"
+        "excitation_nm = { from = 400, to = 700, step = 20 }\n"
+        "reflectance = { file = \"dark.csv\" }\n"
+        "[[fluorophore]]\nabsorptance = 0.5\nexcitation = [{ peak_nm = 450, width_nm = 60 }]\n"
+        "emission = { peak_nm = 560, width_nm = 40 }\nquantum_yield = 0.5\n");
+    const std::string matrix = file_bytes(folder / "m.csv");
+    expect_failure(2, "measure dyed.toml -o m.csv", "would write over what is read");
+    expect_failure(2, "synth recipe.toml -o dark.csv", "would write over what is read");
+    expect_failure(2, "convert m.csv m.csv --out-rows excitation", "would write over what is read");
+    EXPECT_EQ(file_bytes(folder / "m.csv"), matrix);
+}
+
 TEST_F(Outputs, NamesAsLongAsTheyCanBe) {
     const std::string name = std::string(251, 'n') + ".csv";
     EXPECT_EQ(run("measure material.toml -o " + name).exit_code, 0);

@@ -3,7 +3,7 @@
 `render`, `measure`, `synth`, `fit` and `colour` do what the program's commands of these names do,
 on files or on dicts of the same form; `Spectrum`, `Reradiation`, `Stack` and `Image` hold what they
 work on and show themselves in notebooks. Wavelengths are in nm, angles in degrees. The equations and
-their sources are in the project's README.
+their sources are in host/README.md of the project.
 """
 
 from ._compiled_part import load_compiled_part
