@@ -1,6 +1,6 @@
 // Stage 5: radiance of each path, from its last vertex back to the camera. At every vertex one
 // linear operator acts on a vector of wavelengths: L = T(o) B (T(i) L_in) + specular, where B
-// holds the substrate with all its interreflections (DESIGN 2 B, 3).
+// holds the substrate with all its interreflections (host/README.md).
 #include "kernels/features.h"
 #include "kernels/gather_hero.h"
 #include "kernels/gather_lanes.h"

@@ -124,7 +124,7 @@ typedef struct {
     real way_in, way_out;
 } LayerDescent;
 
-/// One part of model A between two directions just above it (DESIGN A; Weidlich and Wilkie 2007,
+/// One part of model A between two directions just above it (Weidlich and Wilkie 2007,
 /// eq. 3-5); both are refracted into the medium below at the macroscopic normal. Nothing passes
 /// when one of them is totally reflected.
 DEVICE_FUNCTION void layer_stack_cross(LayerRecord layer, real eta, LayerDescent* d) {

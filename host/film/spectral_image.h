@@ -32,8 +32,8 @@ struct SpectralImage {
     }
 };
 
-/// Spectral EXR in the layout of Fichet, Pacanowski and Wilkie (JCGT 2021), see INTERFACE
-/// "Images". Atomic. Throws an Error that names the file.
+/// Spectral EXR in the layout of Fichet, Pacanowski and Wilkie (JCGT 2021), see
+/// tools/docs/scene-files.md "Images". Atomic. Throws an Error that names the file.
 void write_spectral_exr(const std::filesystem::path& file, const SpectralImage& image,
                         double exposure_ev = 0.0);
 /// The image is the display window, black outside the data window. S0 channels may be FLOAT or
@@ -50,7 +50,8 @@ struct DisplayOptions {
 std::size_t write_display_png(const std::filesystem::path& file, const SpectralImage& image,
                               const DisplayOptions& options);
 
-/// Linear sRGB (height, width, 3) of an image, from XYZ (INTERFACE, Colour), not clamped.
+/// Linear sRGB (height, width, 3) of an image, from XYZ of unit luminance for unit radiance, not
+/// clamped.
 std::vector<float> linear_srgb(const SpectralImage& image);
 
 struct Comparison {

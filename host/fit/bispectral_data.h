@@ -42,7 +42,7 @@ struct BispectralData {
     Eigen::Index measured_count() const;
 };
 
-/// Reads measured data by its ending: .csv (the re-radiation CSV of INTERFACE, where `nan` stands
+/// Reads measured data by its ending: .csv (the CSV of spectra/README.md, where `nan` stands
 /// for an entry that was not measured, or the CSV of `measure`, whose diffuse rows are taken), .bfc
 /// or .exr. Values are raw: negative and anti-Stokes entries stay. Input Error with the place for
 /// what is malformed, contradictory or out of range. `form` is what a plain table does not say of

@@ -24,7 +24,7 @@ struct Covariance {
 
 /// variance * (J^T J)^+ from the singular values of J with its columns scaled to length 1. What is
 /// below 1e-7 of the largest one is not determined and left out: SPARSE_QR would report variances
-/// of 2e14 there (CASES 50). jacobian: (residuals, parameters), weighted.
+/// of 2e14 there (case 50 of tests/README.md). jacobian: (residuals, parameters), weighted.
 Covariance covariance_of(const Eigen::MatrixXd& jacobian, const std::vector<bool>& held,
                          double variance);
 

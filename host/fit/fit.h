@@ -75,7 +75,7 @@ struct FitResult {
     double noise = 0.0;      ///< median standard error of the data
     bool noise_is_estimated = false;
     double reduced_chi_squared = 0.0;
-    double rmse = 0.0, relative_rmse = 0.0; ///< INTERFACE, `--json` of fit
+    double rmse = 0.0, relative_rmse = 0.0; ///< as in `fit --json`
     std::size_t bytes = 0;
     SolveTrace trace;
     double seconds = 0.0;

@@ -13,7 +13,7 @@ Eigen::VectorXd balanced_diagonal(const PreparedTarget& prepared, const Reradiat
 /// lines. Notes say both.
 void pass_diagonal(const PreparedTarget& prepared, FitResult& result);
 
-/// Error figures of the model against the data (INTERFACE, `--json` of fit).
+/// Error figures of the model against the data, as `fit --json` has them.
 void measure_errors(const PreparedTarget& prepared, FitResult& result);
 
 /// What rounding does to neighbouring entries alike, into the standard errors: a fit does not

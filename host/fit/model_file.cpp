@@ -58,7 +58,7 @@ Vector column_sums(const ReradiationMatrix& matrix) {
 }
 
 /// The excitation of a term such that the scene's integration over cells gives back the sum of
-/// every column: the form of INTERFACE divides by the photons above the excitation, which a
+/// every column: the form of scene files divides by the photons above the excitation, which a
 /// tabulated curve knows in its own way. A few multiplicative corrections suffice.
 Term scene_term(const FitResult& result, Eigen::Index k) {
     Term term{result.emission.value.col(k), result.excitation.value.col(k)};

@@ -64,13 +64,13 @@ double kkt_violation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& g
                      const Eigen::VectorXd& curvature, const NonNegativeModel& model);
 
 /// Minimises by Levenberg-Marquardt steps whose quadratic is minimised exactly under the bounds
-/// (bounded_quadratic.h): the bounds of Ceres 2.1 stop at wrong points (CASES 45 to 47), so Ceres
-/// evaluates residuals, losses and Jacobians, and the steps are taken here. After each step the
-/// affine blocks are solved for (Ruhe and Wedin 1980, algorithm 2): factors may be mixed at almost
-/// no cost, and a step of both factors at once leaves that curved valley. Ends when the KKT
-/// conditions hold to the tolerance, or to 1e-6 where rounding keeps the cost from falling or, at
-/// the limit of iterations, a hundred steps lower it by less than 0.01, a hundredth of what noise
-/// does. Never raises the cost beyond rounding.
+/// (bounded_quadratic.h): the bounds of Ceres 2.1 stop at wrong points (cases 45 to 47 of
+/// tests/README.md), so Ceres evaluates residuals, losses and Jacobians, and the steps are taken
+/// here. After each step the affine blocks are solved for (Ruhe and Wedin 1980, algorithm 2):
+/// factors may be mixed at almost no cost, and a step of both factors at once leaves that curved
+/// valley. Ends when the KKT conditions hold to the tolerance, or to 1e-6 where rounding keeps the
+/// cost from falling or, at the limit of iterations, a hundred steps lower it by less than 0.01, a
+/// hundredth of what noise does. Never raises the cost beyond rounding.
 SolveTrace minimise_non_negative(const NonNegativeModel& model, Eigen::VectorXd& parameters,
                                  const SolverSettings& settings,
                                  std::chrono::steady_clock::time_point start);

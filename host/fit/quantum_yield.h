@@ -19,7 +19,7 @@ struct EmittedPhotons {
 /// One yield a term, from the excitation bands where the term emits at least half as many photons
 /// as at its best and more than the others do (all of the former if it never does). The absorbed
 /// photons are 1 - diagonal, shared like the emission; all photons where the diagonal was not
-/// measured. Warns where they are uncertain by more than 10 % (CASES 51); NaN, with a warning,
+/// measured. Warns where they are uncertain by more than 10 %; NaN, with a warning,
 /// where 95 % of their error reach down to none.
 std::vector<QuantumYield> quantum_yields(const EmittedPhotons& emitted,
                                          const Eigen::VectorXd& diagonal,

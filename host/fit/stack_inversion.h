@@ -44,7 +44,7 @@ struct SubstrateData {
     std::vector<std::string> notes;
 };
 
-/// Inverts model B (DESIGN 2): every block is pi f = T_up T_down B / n_k^2 with B = M (I - diag(r)
+/// Inverts the model `adding`: every block is pi f = T_up T_down B / n_k^2 with B = M (I - diag(r)
 /// M)^-1, so B is the weighted mean over the blocks and M = B (I + diag(r) B)^-1. Unknown numbers
 /// of the stack are those that make the blocks agree best (Ceres; B itself is projected out, Golub
 /// and Pereyra 1973). Emission below the excitation is dark unless `anti_stokes`, so that its noise

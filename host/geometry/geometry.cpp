@@ -32,7 +32,7 @@ bool is_traceable(const RayRecord& r) {
                       r.direction_z + r.t_near;
     const bool has_direction =
         r.direction_x != 0.0f || r.direction_y != 0.0f || r.direction_z != 0.0f;
-    // Debian's Embree aborts on a ray that is not finite (CASES 6).
+    // Debian's Embree aborts on a ray that is not finite.
     return r.t_far >= 0.0f && std::isfinite(sum) && has_direction;
 }
 

@@ -34,7 +34,7 @@ struct TraceStatistics {
 class Geometry {
 public:
     /// Throws an input Error that names shape and primitive for NaN, Inf, coordinates beyond
-    /// 1e18, indices out of range and degenerate sizes (CASES 6, 7). Without `wants_parameters`
+    /// 1e18, indices out of range and degenerate sizes. Without `wants_parameters`
     /// hits on shapes that are no meshes have u = v = 0.
     explicit Geometry(const Scene& scene, bool wants_parameters = true);
     ~Geometry();

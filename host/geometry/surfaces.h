@@ -40,7 +40,7 @@ struct Surfaces {
 };
 
 /// Throws an input Error that names shape (or light) and primitive for what Embree would drop or
-/// read out of bounds without a word (CASES 7).
+/// read out of bounds without a word.
 Surfaces surfaces_of(const Scene& scene);
 
 } // namespace reradiant

@@ -105,7 +105,7 @@ struct LayerValues {
 using StackValues = std::vector<LayerValues>;
 StackValues stack_at(const LayerStack& stack, double wavelength_nm);
 
-/// Width parameter from the half angle where D falls to D(0)/2 (INTERFACE): ggx alpha^2 =
+/// Width parameter from the half angle where D falls to D(0)/2: ggx alpha^2 =
 /// sin^2 b / (sqrt 2 - cos^2 b); beckmann alpha = tan b / sqrt(ln 2 - 4 ln cos b); blinn
 /// exponent = -ln 2 / ln cos b, alpha = sqrt(2 / (exponent + 2)). 0 for 0 degrees.
 double alpha_from_roughness_deg(Distribution distribution, double roughness_deg);

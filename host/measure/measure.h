@@ -75,7 +75,7 @@ Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& su
 /// A substrate at the band centres.
 SubstrateValues measured_substrate(const Substrate& substrate, const WavelengthGrid& bands);
 
-/// Writes the CSV of INTERFACE "measure": notes as # lines, then the header and one line a row, 12
+/// Writes the CSV of `measure`: notes as # lines, then the header and one line a row, 12
 /// significant digits. Atomic.
 void write_measurement(const std::filesystem::path& file, const Measurement& measurement);
 

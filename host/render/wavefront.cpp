@@ -13,7 +13,7 @@ namespace reradiant {
 namespace {
 
 /// Work-items of a group: few enough for any device's limit, and little private memory in all
-/// (CASES 37: PoCL lays out a whole group's private memory on one stack).
+/// (PoCL lays out a whole group's private memory on one stack).
 constexpr std::size_t scalar_group = 32;
 constexpr std::size_t vector_group = 8;
 

@@ -43,7 +43,7 @@ struct WavefrontSettings {
     RaySink on_rays = {};
 };
 
-/// The wavefront path tracer: stages on the device, rays on the host (DESIGN 3).
+/// The wavefront path tracer: stages on the device, rays on the host (kernels/README.md).
 class Wavefront {
 public:
     Wavefront(const Device& device, const Geometry& geometry, const SceneTables& scene,

@@ -16,7 +16,7 @@ struct Lane {
     double line_nm = 0.0, line_width_nm = 0.0;
 };
 
-/// Which wavelengths a scene is sampled at (DESIGN 3, `comb`). Each of `phases` sub-cells of the
+/// Which wavelengths a scene is sampled at. Each of `phases` sub-cells of the
 /// comb's cells is one phase; a path uses one. Narrow lines stand beside the comb as lanes of
 /// their own, after the lane of the cell they lie in, so that lanes ascend in wavelength.
 struct WavelengthPlan {

@@ -29,13 +29,13 @@ MaterialReading read_preset(const std::string& preset, const SourcePosition& at,
 /// The [material.substrate] of a material.
 Substrate read_substrate(const TableReader& material, LoadState& state);
 
-/// RERADIATION (INTERFACE) at a key: fills matrix or fluorophores, and the reflectance. A matrix
+/// A re-radiation at a key: fills matrix or fluorophores, and the reflectance. A matrix
 /// that breaks energy is refused at the key; what was repaired or breaks the photon balance is
 /// logged as a warning.
 void read_reradiation_key(const TableReader& table, const std::string& key, Substrate& substrate,
                           LoadState& state);
 
-/// Wavelengths at which a scene or material with no `bands_nm` is used (DESIGN 1).
+/// Wavelengths at which a scene or material with no `bands_nm` is used.
 std::array<double, 2> default_range_nm(bool fluorescent);
 
 } // namespace reradiant

@@ -48,7 +48,7 @@ private:
 
 toml::array toml_vector(const Eigen::Vector3d& v);
 
-/// A spectrum of a scene file (INTERFACE, SPECTRUM) from a property in any of Mitsuba's forms.
+/// A spectrum, as scene files of this program write it, from a property in any of Mitsuba's forms.
 /// Emission: <float> and <rgb> are multiples of D65, as Mitsuba has them in its spectral modes.
 toml::table mitsuba_emission(const MitsubaObject& owner, const std::string& name,
                              MitsubaScene& scene);

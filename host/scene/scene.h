@@ -20,7 +20,7 @@ using Vector3 = std::array<double, 3>;
 
 struct FilmSettings {
     int width = 0, height = 0;
-    std::optional<WavelengthGrid> bands; ///< empty: chosen by what the scene holds (DESIGN 1)
+    std::optional<WavelengthGrid> bands; ///< empty: chosen by what the scene holds
 };
 
 /// Right-handed; fov is vertical; lens_radius 0 is a pinhole.
@@ -187,7 +187,7 @@ struct Scene {
     std::string hash; ///< hex digest of the scene file and of every file it names
 };
 
-/// Reads a scene file with everything it names (INTERFACE, "Scene and material files"), or an XML
+/// Reads a scene file with everything it names (tools/docs/scene-files.md), or an XML
 /// file of Mitsuba 3 (host/scene/mitsuba_import.h). Unknown
 /// keys, wrong types and lengths, out-of-range numbers and unreadable references throw an input
 /// Error at their place. Warnings go to the log.

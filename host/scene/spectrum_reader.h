@@ -18,7 +18,7 @@ struct SpectrumLimits {
     static SpectrumLimits positive(double high) { return {.high = high, .low_is_allowed = false}; }
 };
 
-/// Reads a SPECTRUM (INTERFACE) at a key of `table`. Limits are checked from 200 to 1000 nm.
+/// Reads a spectrum at a key of `table`. Limits are checked from 200 to 1000 nm.
 /// A table of one wavelength is a constant. Errors are placed at the key, at the offending
 /// element, or in the spectrum's own file.
 Spectrum read_spectrum_key(const TableReader& table, const std::string& key,

@@ -27,7 +27,7 @@ struct NumberRange {
     std::string text() const; ///< "at least 0 and below 180"
 };
 
-/// Coordinates and lengths: Embree drops primitives beyond 1.8e18 without a word (CASES 7).
+/// Coordinates and lengths: Embree drops primitives beyond 1.8e18 without a word.
 inline constexpr double MAX_COORDINATE = 1e18;
 
 /// A finite number in range at a node; `name` and `position` are for the message.

@@ -70,7 +70,7 @@ double read_number_key(const TableReader& table, const std::string& key, const N
 double read_number_key_or(const TableReader& table, const std::string& key, double otherwise,
                           const NumberRange& range, LoadState& state);
 
-/// One [[texture]] table (INTERFACE; keys in the README).
+/// One [[texture]] table (`validate --reference` has its keys).
 Texture read_texture(const toml::table& table, const std::string& file, std::size_t index,
                      LoadState& state);
 

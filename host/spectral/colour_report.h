@@ -34,7 +34,7 @@ struct ColourReport {
 ColourReport colour_report(const ReradiationMatrix& matrix, const std::string& name,
                            const Spectrum& illuminant, ColourSum sum);
 
-/// `--json` of `colour` for one illuminant (INTERFACE).
+/// What `colour --json` writes for one illuminant.
 nlohmann::ordered_json colour_report_json(const ColourReport& report);
 
 } // namespace reradiant

@@ -13,7 +13,7 @@ namespace reradiant {
 enum class Gaps { Refused, BecomeNan };
 
 /// Reads a re-radiation matrix by its ending: .bfc (Labsphere BFC-450; kind = measured), .exr
-/// (bispectral, Fichet, Pacanowski and Wilkie 2021), else text (INTERFACE, "Re-radiation CSV": wide
+/// (bispectral, Fichet, Pacanowski and Wilkie 2021), else text (spectra/README.md: wide
 /// or long form, per-band or density-per-nm, either orientation). Values are converted to
 /// per-band form with rows = emission, axes ascending, but otherwise raw: nothing is repaired or
 /// checked for energy here. What cannot be in nm and unit 1 (plausible_matrix.h) is refused. With
@@ -27,7 +27,7 @@ ReradiationMatrix read_reradiation(const std::filesystem::path& file, Gaps gaps 
 /// the same double).
 void write_reradiation(const std::filesystem::path& file, const ReradiationMatrix& matrix);
 
-/// How a CSV lays a matrix out (INTERFACE, "Re-radiation CSV").
+/// How a CSV lays a matrix out (spectra/README.md).
 struct MatrixCsvForm {
     MatrixQuantity quantity = MatrixQuantity::PerBand;
     bool rows_are_emission = true;

@@ -14,7 +14,7 @@ namespace reradiant {
 namespace {
 
 constexpr double same_wavelength_in_steps = 1e-6;
-constexpr double negative_rounding = 1e-6; // CASES of the model: below this it is an error
+constexpr double negative_rounding = 1e-6; // of a model: below this it is an error
 constexpr double balance_slack = 1e-6;
 
 void require_shape(const ReradiationMatrix& matrix) {

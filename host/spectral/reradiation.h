@@ -10,7 +10,7 @@
 
 namespace reradiant {
 
-/// The form a matrix is in (DESIGN 1). Every function and file names it.
+/// The form a matrix is in. Every function and file names it.
 enum class MatrixQuantity { PerBand, DensityPerNm };
 /// A model must satisfy the physics; a measurement holds noise.
 enum class MatrixKind { Model, Measured };
@@ -42,7 +42,7 @@ struct ReradiationMatrix {
 int diagonal_row(const ReradiationMatrix& matrix, int excitation_band);
 
 /// One fluorophore: F(lo, li) = Q x(li) li e(lo) / integral over lo > li of e(l) l dl, zero for
-/// lo <= li (INTERFACE, RERADIATION).
+/// lo <= li.
 struct Fluorophore {
     Spectrum excitation; ///< x: fraction of incident photons absorbed, 0..1
     Spectrum emission;   ///< e: relative radiant power per nm
@@ -73,7 +73,7 @@ struct MatrixRepair {
     std::string text() const; ///< one line; empty when nothing changed
 };
 
-/// Checks a matrix and makes it usable for rendering (INTERFACE, RERADIATION; CASES 25, 26):
+/// Checks a matrix and makes it usable for rendering (spectra/README.md):
 /// a model that is negative beyond 1e-6, breaks energy (a column over 1 + 1e-6) or has
 /// anti-Stokes entries without leave throws std::invalid_argument naming the column; entries
 /// between -1e-6 and 0 become 0 and are reported. A measurement has negative and anti-Stokes

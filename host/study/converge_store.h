@@ -38,7 +38,7 @@ void keep_reference(const std::filesystem::path& folder, Reference& reference);
 std::optional<Reference> kept_reference(const std::filesystem::path& folder,
                                         const std::string& identity);
 
-/// curve.csv as INTERFACE has it.
+/// curve.csv, a line for each point of each method.
 void write_curves_csv(const std::filesystem::path& file, const ConvergeResult& result);
 /// curve.json: the scene, the reference, and of each method its fits and rows.
 nlohmann::ordered_json converge_json(const ConvergeResult& result, const Scene& scene,

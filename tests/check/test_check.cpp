@@ -84,7 +84,7 @@ TEST(Check, FindsAFormulaThatIsOffByOnePartInAThousand) {
 }
 
 TEST(Check, FindsAnUnstableForm) {
-    // CASES 8: 1 - z^2 instead of x^2 + y^2
+    // case 8: 1 - z^2 instead of x^2 + y^2
     const ChangedKernel changed("kernels/microfacet.h", "real sin2 = h.x * h.x + h.y * h.y;",
                                 "real sin2 = REAL(1.0) - h.z * h.z;");
     EXPECT_FALSE(checked("microfacet_d ggx").passed());

@@ -24,7 +24,7 @@ TEST(Tracked, ExactNumbersAndSumsOfThemHaveNoError) {
 }
 
 TEST(Tracked, TellsAStableFormFromOneThatCancels) {
-    // CASES 8: 1 - z^2 of a facet normal at alpha 1e-3, against x^2 + y^2
+    // case 8: 1 - z^2 of a facet normal at alpha 1e-3, against x^2 + y^2
     const double x = static_cast<double>(1e-3f);
     const Tracked z = tracked::sqrt(Tracked(1.0) - Tracked(x) * Tracked(x));
     EXPECT_GT(relative(Tracked(1.0) - z * z), 0.05);

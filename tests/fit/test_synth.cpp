@@ -135,7 +135,7 @@ TEST_F(Synth, AStackActsAsTheAddingFormulaSays) {
     recipe.stack.layers = {Layer{}}; // n 1.5, smooth, clear
     recipe.geometries = {{0, 0, 90}};
     const Eigen::MatrixXd bare = synth_truth(recipe).values;
-    const double r = 0.596346, t = 0.96; // DESIGN's closed form, Fresnel at normal incidence
+    const double r = 0.596346, t = 0.96; // the closed form of adding, Fresnel at normal incidence
     const Eigen::MatrixXd expected =
         t * t / 2.25 * bare * (Eigen::MatrixXd::Identity(31, 31) - r * bare).inverse();
     // r has six digits.

@@ -74,7 +74,7 @@ const double OFFSETS[] = {0.0, 1.0, 1e2, 1e4, 1e5};
 
 } // namespace
 
-// 1e6 rays in all: CASES 3 asks for none in a million.
+// 1e6 rays in all: case 3 asks for none in a million.
 TEST(LeavingSurfaces, Case03NoRayHitsTheSurfaceThatItLeaves) {
     for (const double offset : OFFSETS) {
         const Vector3 c{offset, -offset, 0.5 * offset};
@@ -166,5 +166,5 @@ TEST(LeavingSurfaces, Case05AClosedMeshFarFromTheOriginDoesNotLeak) {
     std::size_t leaks = 0;
     for (const HitRecord& hit : trace(geometry, rays))
         leaks += hit.shape == NO_INDEX;
-    EXPECT_LE(leaks, 20u); // CASES 5: 2e-5
+    EXPECT_LE(leaks, 20u); // case 5: 2e-5
 }

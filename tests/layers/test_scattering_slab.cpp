@@ -58,7 +58,7 @@ private:
 
 TEST(ScatteringSlab, Case21ThirtyDoublingsOfTwoFluxes) {
     // one cell is a model of two fluxes; isotropic scattering makes a thin layer reflect r = tau,
-    // so tau / 2 of CASES is half the depth: T = 1 / (1 + 1073.7 / 2)
+    // so tau / 2 of that case is half the depth: T = 1 / (1 + 1073.7 / 2)
     const AngularGrid grid{1.0, 0.0, {0.0, 1.0}};
     const double depth = std::ldexp(1e-6, 30) / 2;
     const SlabOperator op = scattering_slab(grid, 0.0, depth, 0.0);

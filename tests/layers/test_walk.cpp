@@ -210,7 +210,7 @@ TEST(Walk, WhiteStacksOfMultipleScatteringReflectEverything) {
 }
 
 TEST(Walk, SingleScatteringLosesWhatIsKnown) {
-    // clear GGX coats of n = 1.5 over white, from an independent random walk (DESIGN)
+    // clear GGX coats of n = 1.5 over white, from an independent random walk
     for (const auto& [alpha, loss] : {std::pair{0.1, 0.074}, {0.3, 0.296}, {0.6, 0.497}}) {
         const LayerWalk walk({{plain_layer(1.5, alpha, 0.0, Scattering::Single)}},
                              {.matrix = Eigen::MatrixXd::Identity(1, 1)}, {550.0});

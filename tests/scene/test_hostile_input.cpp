@@ -13,7 +13,7 @@ namespace {
 class HostileInput : public Scratch {
 protected:
     /// Loads text as a scene: it must end in an Error of exit code 2 or a scene, within a second
-    /// (CASES 36). Returns the message, empty for a scene.
+    /// (case 36). Returns the message, empty for a scene.
     std::string load(const std::string& text) {
         const auto start = std::chrono::steady_clock::now();
         const auto file = write("scene.toml", text);
@@ -25,7 +25,7 @@ protected:
             message = error.what();
         }
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-        // CASES 36 says 1 s; a machine that compiles beside the test gets three times that.
+        // Case 36 says 1 s; a machine that compiles beside the test gets three times that.
         EXPECT_LT(seconds.count(), 3.0);
         return message;
     }

@@ -159,7 +159,7 @@ TEST_F(Mitsuba, Materials) {
 
 TEST_F(Mitsuba, PlasticWithoutNonlinearGetsTheReflectanceThatLooksAlike) {
     // The base of reflectance p sends up p / (1 - r p) by way of every reflection; Mitsuba without
-    // nonlinear p / (1 - r). r of n = 1.5: DESIGN.
+    // nonlinear p / (1 - r). r of n = 1.5 is known in closed form.
     const double r = 0.596346;
     const auto base = [&](const std::string& reflectance) {
         return material(R"(<bsdf type="plastic"><float name="int_ior" value="1.5"/>

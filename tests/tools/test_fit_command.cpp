@@ -11,7 +11,7 @@ namespace {
 
 using FitCommand = ProgramTest;
 
-/// A measured matrix of one fluorophore on 30 bands, in the form of INTERFACE.
+/// A measured matrix of one fluorophore on 30 bands, in the form of spectra/README.md.
 std::string measured_csv() {
     std::string text = "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
                        "# kind: measured\nnm";
