@@ -182,8 +182,6 @@ int run_convert(const ConvertOptions& options, const CommonOptions& common) {
     return 0;
 }
 
-} // namespace
-
 /// What tells a plain table of numbers.
 void add_table_options(CLI::App& command, ConvertOptions& options) {
     const char* const group = "A table that does not say what its numbers are";
@@ -229,6 +227,8 @@ void add_table_options(CLI::App& command, ConvertOptions& options) {
         .add_option("--out-quantity", options.out_quantity, "of a matrix written as CSV: per-band")
         ->check(choice({"per-band", "density", "density-per-nm"}));
 }
+
+} // namespace
 
 void add_convert_command(CLI::App& program, CommandContext& context) {
     const auto options = std::make_shared<ConvertOptions>();

@@ -19,7 +19,7 @@ endfunction()
 # by pkg-config; works in FOLDER.
 function(link_example prefix folder)
   set(example ${SOURCE}/tools/examples/link-library)
-  # T = 4 n / (n + 1)^2 at n = 1.5; r as README has it.
+  # T = 4 n / (n + 1)^2 at n = 1.5; r is known in closed form.
   set(expected "T 0.960000, r 0.596346\nXYZ [0-9.]+ [0-9.]+ [0-9.]+")
   run(said ${CMAKE_COMMAND} -G Ninja -S ${example} -B ${folder}/cmake -DCMAKE_PREFIX_PATH=${prefix})
   run(said ${CMAKE_COMMAND} --build ${folder}/cmake)

@@ -147,7 +147,7 @@ TEST_F(SceneFile, LayersAreReadFromTheAirDown) {
     EXPECT_EQ(top.scattering, Scattering::Single);
     EXPECT_EQ(top.thickness, 0.5);
     EXPECT_EQ(top.absorption(500.0), 2.0);
-    // INTERFACE: beckmann alpha = tan b / sqrt(ln 2 - 4 ln cos b); both sides in double.
+    // Half angle: beckmann alpha = tan b / sqrt(ln 2 - 4 ln cos b); both sides in double.
     const double b = 10.0 * std::acos(-1.0) / 180.0;
     EXPECT_NEAR(top.alpha, std::tan(b) / std::sqrt(std::log(2.0) - 4.0 * std::log(std::cos(b))),
                 1e-14);
