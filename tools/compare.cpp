@@ -1,4 +1,4 @@
-#include "host/error.h"
+#include "host/base/error.h"
 #include "host/film/image_memory.h"
 #include "host/film/spectral_image.h"
 #include "host/report/json_file.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/scene/scene.h"
+#include "host/scene/model/scene.h"
 
 #include <nlohmann/json.hpp>
 

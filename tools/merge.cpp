@@ -1,5 +1,5 @@
 #include "host/film/merge.h"
-#include "host/error.h"
+#include "host/base/error.h"
 #include "host/film/display_picture.h"
 #include "host/film/image_memory.h"
 #include "host/report/json_file.h"

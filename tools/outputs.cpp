@@ -1,8 +1,8 @@
 #include "tools/outputs.h"
 
-#include "host/error.h"
-#include "host/output_ending.h"
-#include "host/output_file.h"
+#include "host/base/error.h"
+#include "host/base/output_ending.h"
+#include "host/base/output_file.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "tools/parse_options.h"
 
-#include "host/error.h"
-#include "host/render/wavelength_text.h"
+#include "host/base/error.h"
+#include "host/render/plan/wavelength_text.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "host/film/merge.h"
-#include "host/render/wavelength_plan.h"
-#include "host/scene/scene.h"
-#include "host/spectral/grid.h"
+#include "host/render/plan/wavelength_plan.h"
+#include "host/scene/model/scene.h"
+#include "host/spectral/spectrum/grid.h"
 
 #include <cstdint>
 #include <string>

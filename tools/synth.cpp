@@ -1,8 +1,8 @@
-#include "host/fit/synth.h"
-#include "host/error.h"
+#include "host/fit/synth/synth.h"
+#include "host/base/error.h"
 #include "host/report/json_file.h"
-#include "host/scene/named_files.h"
-#include "host/spectral/matrix_io.h"
+#include "host/scene/model/named_files.h"
+#include "host/spectral/files/matrix_io.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
 

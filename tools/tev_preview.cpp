@@ -1,6 +1,6 @@
 #include "tools/tev_preview.h"
 
-#include "host/error.h"
+#include "host/base/error.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,10 +1,10 @@
 #include "host/check/check.h"
 
+#include "host/base/error.h"
 #include "host/check/checked_function.h"
 #include "host/check/error_statistics.h"
 #include "host/check/probe_source.h"
 #include "host/device/buffer.h"
-#include "host/error.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

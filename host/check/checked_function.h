@@ -3,7 +3,7 @@
 #include "host/check/tracked.h"
 
 #include "host/check/arguments.h"
-#include "kernels/check_tables.h"
+#include "kernels/core/check_tables.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "host/check/check.h"
 
-#include "host/error.h"
-#include "host/regular_file.h"
+#include "host/base/error.h"
+#include "host/base/regular_file.h"
 #include "host/report/json_file.h"
 
 #include <fmt/format.h>

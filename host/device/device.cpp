@@ -1,8 +1,8 @@
 #include "host/device/device.h"
 
+#include "host/base/error.h"
 #include "host/device/driver_cache.h"
 #include "host/device/driver_list.h"
-#include "host/error.h"
 
 #include <fmt/format.h>
 

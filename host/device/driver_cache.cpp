@@ -1,6 +1,6 @@
 #include "host/device/driver_cache.h"
 
-#include "host/paths.h"
+#include "host/base/paths.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,7 +1,7 @@
 #include "host/device/driver_list.h"
 
+#include "host/base/regular_file.h"
 #include "host/device/device.h"
-#include "host/regular_file.h"
 
 #include <CL/cl_ext.h>
 

@@ -1,9 +1,9 @@
 #include "host/device/program.h"
 
-#include "host/atomic_file.h"
+#include "host/base/atomic_file.h"
+#include "host/base/error.h"
+#include "host/base/paths.h"
 #include "host/device/program_cache.h"
-#include "host/error.h"
-#include "host/paths.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/colour.h"
+#include "host/spectral/colour/colour.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "host/error.h"
+#include "host/base/error.h"
 #include "host/film/colour_image.h"
 #include "host/film/display_picture.h"
 #include "host/film/png.h"

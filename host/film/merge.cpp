@@ -1,6 +1,6 @@
 #include "host/film/merge.h"
 
-#include "host/error.h"
+#include "host/base/error.h"
 #include "host/film/colour_image.h"
 
 #include <fmt/format.h>

@@ -18,7 +18,8 @@ struct SampleRange {
     bool operator==(const SampleRange&) const = default;
 };
 
-/// Facts by name that decide which samples a render takes (host/render/render_identity.h).
+/// Facts by name that decide which samples a render takes
+/// (host/render/checkpoint/render_identity.h).
 using SampleIdentity = std::vector<std::pair<std::string, std::string>>;
 
 /// "the seed is A, not B" for the first fact that differs; nothing when all agree.

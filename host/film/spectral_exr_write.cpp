@@ -1,5 +1,5 @@
-#include "host/atomic_file.h"
-#include "host/error.h"
+#include "host/base/atomic_file.h"
+#include "host/base/error.h"
 #include "host/film/checked_stream.h"
 #include "host/film/exr_layout.h"
 #include "host/film/spectral_channels.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/scene/scene.h"
-#include "kernels/shared.h"
+#include "host/scene/model/scene.h"
+#include "kernels/core/shared.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/scene/scene.h"
-#include "kernels/portable.h"
+#include "host/scene/model/scene.h"
+#include "kernels/core/portable.h"
 
 #include <array>
 #include <cstdint>

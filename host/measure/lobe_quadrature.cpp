@@ -1,6 +1,6 @@
 #include "host/measure/lobe_quadrature.h"
 
-#include "host/layers/quadrature.h"
+#include "host/layers/stack/quadrature.h"
 #include "host/measure/surface_angles.h"
 
 #include <algorithm>

@@ -2,11 +2,11 @@
 
 #include "host/measure/measure_memory.h"
 
-#include "host/error.h"
+#include "host/base/error.h"
 #include "host/measure/surface_angles.h"
 #include "host/measure/surface_model.h"
 #include "host/measure/walk_measurement.h"
-#include "host/scene/model_choice.h"
+#include "host/scene/model/model_choice.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "host/interruption.h"
-#include "host/layers/walk_estimate.h"
+#include "host/base/interruption.h"
+#include "host/layers/walk/walk_estimate.h"
 #include "host/measure/surface_model.h"
-#include "host/scene/scene.h"
+#include "host/scene/model/scene.h"
 
 #include <Eigen/Core>
 

@@ -1,6 +1,6 @@
 #include "host/measure/measure_memory.h"
 
-#include "host/memory_limit.h"
+#include "host/base/memory_limit.h"
 
 namespace reradiant {
 

@@ -1,4 +1,4 @@
-#include "host/atomic_file.h"
+#include "host/base/atomic_file.h"
 #include "host/measure/measure.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "host/measure/surface_angles.h"
 
-#include "host/layers/quadrature.h"
+#include "host/layers/stack/quadrature.h"
 
 #include <cmath>
 

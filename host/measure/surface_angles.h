@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/layers/stack.h"
-#include "host/spectral/grid.h"
-#include "kernels/portable.h"
+#include "host/layers/stack/stack.h"
+#include "host/spectral/spectrum/grid.h"
+#include "kernels/core/portable.h"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "host/layers/adding.h"
-#include "host/layers/substrate_values.h"
-#include "host/spectral/grid.h"
-#include "kernels/portable.h"
+#include "host/layers/models/adding.h"
+#include "host/layers/stack/substrate_values.h"
+#include "host/spectral/spectrum/grid.h"
+#include "kernels/core/portable.h"
 
 #include <Eigen/Core>
 

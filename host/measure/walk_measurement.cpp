@@ -1,6 +1,6 @@
 #include "host/measure/walk_measurement.h"
 
-#include "host/layers/walk_estimate.h"
+#include "host/layers/walk/walk_estimate.h"
 #include "host/measure/surface_angles.h"
 
 #include <fmt/format.h>

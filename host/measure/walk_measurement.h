@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/layers/walk.h"
+#include "host/layers/walk/walk.h"
 #include "host/measure/measure.h"
 
 namespace reradiant {

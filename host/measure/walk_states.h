@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/layers/walk_estimate.h"
+#include "host/layers/walk/walk_estimate.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 #include "host/report/data_uri.h"
 
-#include "host/error.h"
+#include "host/base/error.h"
 
 #include <fmt/format.h>
 

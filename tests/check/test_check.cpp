@@ -1,6 +1,6 @@
+#include "host/base/error.h"
+#include "host/base/paths.h"
 #include "host/check/check.h"
-#include "host/error.h"
-#include "host/paths.h"
 #include "tests/full_run.h"
 
 #include <gtest/gtest.h>
@@ -78,20 +78,22 @@ TEST(Check, EveryFunctionPassesOnThisDevice) {
 }
 
 TEST(Check, FindsAFormulaThatIsOffByOnePartInAThousand) {
-    const ChangedKernel changed("kernels/fresnel.h", fresnel_sum,
+    const ChangedKernel changed("kernels/scatter/fresnel.h", fresnel_sum,
                                 "r = REAL(0.5005) * (s * s + p * p);");
     EXPECT_FALSE(checked("fresnel_dielectric").passed());
 }
 
 TEST(Check, FindsAnUnstableForm) {
     // case 8: 1 - z^2 instead of x^2 + y^2
-    const ChangedKernel changed("kernels/microfacet.h", "real sin2 = h.x * h.x + h.y * h.y;",
+    const ChangedKernel changed("kernels/scatter/microfacet.h",
+                                "real sin2 = h.x * h.x + h.y * h.y;",
                                 "real sin2 = REAL(1.0) - h.z * h.z;");
     EXPECT_FALSE(checked("microfacet_d ggx").passed());
 }
 
 TEST(Check, Case44FindsANanWhereTheTwinIsFinite) {
-    const ChangedKernel changed("kernels/fresnel.h", "return r < REAL(1.0) ? r : REAL(1.0);",
+    const ChangedKernel changed("kernels/scatter/fresnel.h",
+                                "return r < REAL(1.0) ? r : REAL(1.0);",
                                 "return (g2 - g2) / (g2 - g2);");
     const CheckReport report = checked("fresnel_dielectric");
     ASSERT_FALSE(report.passed());
@@ -107,7 +109,7 @@ TEST(Check, RegressionFileNoticesWhatMoved) {
     compare_results(saved, same);
     EXPECT_TRUE(same.passed()) << failures(same);
     {
-        const ChangedKernel changed("kernels/fresnel.h", fresnel_sum,
+        const ChangedKernel changed("kernels/scatter/fresnel.h", fresnel_sum,
                                     "r = REAL(0.5005) * (s * s + p * p);");
         CheckReport moved = checked("fresnel_dielectric");
         moved.functions.front().failures.clear(); // what it says without the file
@@ -122,7 +124,7 @@ TEST(Check, RegressionFileNoticesWhatMoved) {
 
 TEST(Check, RegressionFileMustBeOne) {
     EXPECT_THROW(read_saved_results("/nowhere.json"), Error);
-    EXPECT_THROW(read_saved_results(data_directory() / "kernels/random.h"), Error);
+    EXPECT_THROW(read_saved_results(data_directory() / "kernels/core/random.h"), Error);
 }
 
 TEST(Check, DoubleKernelsAgreeWithTheTwinToTheirOwnPrecision) {

@@ -1,7 +1,7 @@
 // What a device refuses, and that the cause is named before or after it does.
+#include "host/base/error.h"
 #include "host/device/buffer.h"
 #include "host/device/program.h"
-#include "host/error.h"
 
 #include <gtest/gtest.h>
 

@@ -144,7 +144,7 @@ def expect(result, codes, arguments):
 
 
 def leftovers(folder):
-    """Temporary files that a run left (host/atomic_file.h names them)."""
+    """Temporary files that a run left (host/base/atomic_file.h names them)."""
     return [file.name for file in folder.rglob(".*.partial*")]
 
 

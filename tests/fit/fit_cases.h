@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/fit/bispectral_data.h"
-#include "host/fit/fit.h"
-#include "host/spectral/reradiation.h"
+#include "host/fit/data/bispectral_data.h"
+#include "host/fit/result/fit.h"
+#include "host/spectral/matrix/reradiation.h"
 
 #include <algorithm>
 #include <cmath>

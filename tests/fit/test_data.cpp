@@ -1,6 +1,6 @@
-#include "host/error.h"
-#include "host/fit/bispectral_data.h"
-#include "host/fit/prepared_target.h"
+#include "host/base/error.h"
+#include "host/fit/data/bispectral_data.h"
+#include "host/fit/data/prepared_target.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"
 

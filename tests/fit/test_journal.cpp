@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/fit/solve_journal.h"
+#include "host/base/error.h"
+#include "host/fit/solver/solve_journal.h"
 #include "tests/fit/fit_cases.h"
 
 #include <gtest/gtest.h>

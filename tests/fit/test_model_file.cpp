@@ -1,6 +1,6 @@
-#include "host/fit/fit_report.h"
-#include "host/fit/model_file.h"
-#include "host/scene/scene.h"
+#include "host/fit/data/model_file.h"
+#include "host/fit/result/fit_report.h"
+#include "host/scene/model/scene.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"
 

@@ -1,6 +1,6 @@
-#include "host/fit/noise_estimate.h"
-#include "host/fit/prepared_target.h"
-#include "host/fit/rounding_steps.h"
+#include "host/fit/data/noise_estimate.h"
+#include "host/fit/data/prepared_target.h"
+#include "host/fit/data/rounding_steps.h"
 #include "tests/fit/fit_cases.h"
 #include "tests/full_run.h"
 

@@ -1,4 +1,4 @@
-#include "host/fit/fit_summary.h"
+#include "host/fit/result/fit_summary.h"
 #include "tests/fit/fit_cases.h"
 #include "tests/full_run.h"
 

@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/fit/stack_inversion.h"
+#include "host/base/error.h"
+#include "host/fit/stack/stack_inversion.h"
 #include "host/measure/measure.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"

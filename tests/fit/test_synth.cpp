@@ -1,5 +1,5 @@
-#include "host/fit/synth.h"
-#include "host/fit/synth_band.h"
+#include "host/fit/synth/synth.h"
+#include "host/fit/synth/synth_band.h"
 #include "tests/spectral/scratch_folder.h"
 
 #include <Eigen/LU>

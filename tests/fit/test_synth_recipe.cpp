@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/fit/synth.h"
+#include "host/base/error.h"
+#include "host/fit/synth/synth.h"
 #include "tests/spectral/scratch_folder.h"
 
 #include <algorithm>

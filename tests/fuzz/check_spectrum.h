@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/spectrum_formats.h"
+#include "host/spectral/spectrum/spectrum_formats.h"
 #include "tests/fuzz/fuzz_input.h"
 
 #include <algorithm>

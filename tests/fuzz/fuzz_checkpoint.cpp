@@ -1,4 +1,4 @@
-#include "host/render/checkpoint.h"
+#include "host/render/checkpoint/checkpoint.h"
 #include "tests/fuzz/digested_input.h"
 
 // Checkpoints of a render.

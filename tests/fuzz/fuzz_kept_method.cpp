@@ -1,4 +1,4 @@
-#include "host/study/converge_store.h"
+#include "host/study/converge/converge_store.h"
 #include "tests/fuzz/fuzz_input.h"
 
 #include <cmath>

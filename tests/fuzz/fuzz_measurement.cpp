@@ -1,4 +1,4 @@
-#include "host/fit/bispectral_data.h"
+#include "host/fit/data/bispectral_data.h"
 #include "tests/fuzz/fuzz_input.h"
 
 #include <cmath>

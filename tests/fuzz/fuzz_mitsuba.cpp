@@ -1,4 +1,4 @@
-#include "host/scene/scene.h"
+#include "host/scene/model/scene.h"
 #include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/fuzz_input.h"
 

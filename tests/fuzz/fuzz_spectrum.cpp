@@ -1,4 +1,4 @@
-#include "host/spectral/matrix_io.h"
+#include "host/spectral/files/matrix_io.h"
 #include "tests/fuzz/check_spectrum.h"
 
 // A spectrum of any format that the file says it is of; two columns (.spd and the CSV of spectra),

@@ -1,6 +1,6 @@
-#include "host/fit/solve_journal.h"
+#include "host/fit/solver/solve_journal.h"
 #include "host/measure/walk_states.h"
-#include "host/render/work_checkpoint.h"
+#include "host/render/checkpoint/work_checkpoint.h"
 #include "tests/fuzz/digested_input.h"
 
 // Checkpoints of fits and of measurements by the walk.

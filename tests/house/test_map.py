@@ -6,15 +6,14 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HOST = ROOT / "host"
-OWN_FILES = "files of `host` itself"
 DOCUMENTS = [ROOT / "README.md", *(ROOT / folder / "README.md" for folder in ("host", "kernels", "spectra", "tests")),
              ROOT / "tools/bench/README.md", *sorted((ROOT / "tools/docs").glob("*.md"))]
 
 
 def folders_of_map():
     """Rows of the first table of host/README.md, from the top: what a row may include stands above it."""
-    rows = re.findall(r"^\| (`[a-z]+`|" + OWN_FILES + r") \|", (HOST / "README.md").read_text(), re.MULTILINE)
-    return ["" if row == OWN_FILES else row.strip("`") for row in rows]
+    rows = re.findall(r"^\| `([a-z]+)` \|", (HOST / "README.md").read_text(), re.MULTILINE)
+    return rows
 
 
 def sources():
@@ -22,14 +21,14 @@ def sources():
 
 
 def folder_of(path):
-    """The folder of host/ that a path below it lies in; empty for files of host/ itself."""
-    return path.parts[0] if len(path.parts) > 1 else ""
+    """The folder of host/ that a path below it lies in."""
+    return path.parts[0]
 
 
 class Map(unittest.TestCase):
     def test_every_folder_stands_in_it_once(self):
         built = sorted(path.name for path in HOST.iterdir() if path.is_dir())
-        self.assertEqual(sorted(folders_of_map()), ["", *built])
+        self.assertEqual(sorted(folders_of_map()), built)
 
     def test_a_folder_includes_only_what_stands_above_it(self):
         place = {folder: index for index, folder in enumerate(folders_of_map())}

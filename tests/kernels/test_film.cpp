@@ -1,5 +1,5 @@
 // The film kernel itself: what it refuses, and that its sums do not stop growing.
-#include "kernels/shared.h"
+#include "kernels/core/shared.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>

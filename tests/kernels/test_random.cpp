@@ -1,5 +1,5 @@
-#include "kernels/random.h"
-#include "kernels/wavelength.h"
+#include "kernels/core/random.h"
+#include "kernels/core/wavelength.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/layers/stack.h"
-#include "kernels/microfacet.h"
+#include "host/layers/stack/stack.h"
+#include "kernels/scatter/microfacet.h"
 
 #include <cmath>
 #include <random>

@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/layers/effective_matrix.h"
+#include "host/base/error.h"
+#include "host/layers/models/effective_matrix.h"
 
 #include <gtest/gtest.h>
 

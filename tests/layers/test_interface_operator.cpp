@@ -1,4 +1,4 @@
-#include "host/layers/interface_operator.h"
+#include "host/layers/rough/interface_operator.h"
 #include "tests/layers/private_cache.h"
 
 #include <gtest/gtest.h>

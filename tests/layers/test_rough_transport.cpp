@@ -1,6 +1,6 @@
-#include "host/layers/adding.h"
-#include "kernels/fresnel.h"
-#include "kernels/microfacet.h"
+#include "host/layers/models/adding.h"
+#include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/microfacet.h"
 #include "tests/layers/private_cache.h"
 #include "tests/layers/reference_walk.h"
 

@@ -1,6 +1,6 @@
-#include "host/error.h"
-#include "host/layers/adding.h"
-#include "host/layers/smooth_stack.h"
+#include "host/base/error.h"
+#include "host/layers/models/adding.h"
+#include "host/layers/smooth/smooth_stack.h"
 
 #include <gtest/gtest.h>
 

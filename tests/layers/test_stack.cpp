@@ -1,7 +1,7 @@
-#include "host/layers/stack.h"
-#include "kernels/microfacet.h"
+#include "host/layers/stack/stack.h"
+#include "kernels/scatter/microfacet.h"
 
-#include "host/layers/interface_walk.h"
+#include "host/layers/rough/interface_walk.h"
 
 #include <gtest/gtest.h>
 

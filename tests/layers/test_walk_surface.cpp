@@ -1,4 +1,4 @@
-#include "host/layers/walk_surface.h"
+#include "host/layers/walk/walk_surface.h"
 #include "tests/full_run.h"
 #include "tests/layers/walk_statistics.h"
 

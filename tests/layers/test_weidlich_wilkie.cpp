@@ -1,4 +1,4 @@
-#include "host/layers/weidlich_wilkie.h"
+#include "host/layers/models/weidlich_wilkie.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "host/layers/adding.h"
-#include "host/layers/facet_interreflection.h"
-#include "host/layers/facet_reflectance.h"
-#include "host/layers/walk_estimate.h"
-#include "host/layers/weidlich_wilkie.h"
-#include "host/layers/weidlich_wilkie_residual.h"
+#include "host/layers/models/adding.h"
+#include "host/layers/models/weidlich_wilkie.h"
+#include "host/layers/models/weidlich_wilkie_residual.h"
+#include "host/layers/rough/facet_interreflection.h"
+#include "host/layers/rough/facet_reflectance.h"
+#include "host/layers/walk/walk_estimate.h"
 #include "tests/layers/private_cache.h"
 
 #include <gtest/gtest.h>

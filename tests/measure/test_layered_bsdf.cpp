@@ -1,6 +1,6 @@
 // The triple eval, sample, pdf of layered materials: chi-square of directions over half vectors,
 // and reflectances found by sampling against those of the goniophotometer.
-#include "host/error.h"
+#include "host/base/error.h"
 #include "host/measure/layered_bsdf.h"
 #include "host/measure/measure.h"
 #include "host/measure/surface_angles.h"

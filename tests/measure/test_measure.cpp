@@ -1,4 +1,4 @@
-#include "host/error.h"
+#include "host/base/error.h"
 #include "host/measure/measure.h"
 
 #include <gtest/gtest.h>

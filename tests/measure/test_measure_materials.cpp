@@ -1,10 +1,10 @@
-#include "host/error.h"
-#include "host/layers/adding.h"
+#include "host/base/error.h"
+#include "host/layers/models/adding.h"
 #include "host/measure/lobe_quadrature.h"
 #include "host/measure/measure.h"
 #include "host/measure/surface_angles.h"
-#include "kernels/microfacet.h"
-#include "kernels/oren_nayar.h"
+#include "kernels/scatter/microfacet.h"
+#include "kernels/scatter/oren_nayar.h"
 #include "tests/layers/private_cache.h"
 
 #include <gtest/gtest.h>

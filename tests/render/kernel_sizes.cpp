@@ -1,6 +1,6 @@
 #include "tests/render/kernel_sizes.h"
 
-#include "host/error.h"
+#include "host/base/error.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Adaptive sampling: where the samples go, that the image stays right, and what it gains.
-#include "host/render/adaptive.h"
+#include "host/render/wavefront/adaptive.h"
 #include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
 

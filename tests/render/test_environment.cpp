@@ -1,4 +1,4 @@
-#include "host/spectral/rgb_basis.h"
+#include "host/spectral/colour/rgb_basis.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>

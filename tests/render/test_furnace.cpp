@@ -1,5 +1,5 @@
-#include "host/layers/adding.h"
-#include "host/layers/effective_matrix.h"
+#include "host/layers/models/adding.h"
+#include "host/layers/models/effective_matrix.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "host/error.h"
+#include "host/base/error.h"
 #include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
 

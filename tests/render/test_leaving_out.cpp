@@ -1,6 +1,6 @@
 // What a scene does not need costs nothing, and edits of numbers build nothing.
 #include "host/device/program.h"
-#include "host/render/render_features.h"
+#include "host/render/plan/render_features.h"
 #include "tests/full_run.h"
 #include "tests/render/kernel_sizes.h"
 #include "tests/render/test_scenes.h"

@@ -1,6 +1,6 @@
-#include "host/layers/adding.h"
-#include "host/layers/effective_matrix.h"
-#include "host/layers/weidlich_wilkie.h"
+#include "host/layers/models/adding.h"
+#include "host/layers/models/effective_matrix.h"
+#include "host/layers/models/weidlich_wilkie.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "host/paths.h"
+#include "host/base/paths.h"
 #include "tests/render/walk_strips.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // finite numbers, none negative, no direction that its own pdf calls impossible.
 #include "host/device/buffer.h"
 #include "host/device/program.h"
-#include "host/render/scene_tables.h"
+#include "host/render/tables/scene_tables.h"
 #include "tests/full_run.h"
 #include "tests/render/random_materials.h"
 
@@ -24,7 +24,7 @@ constexpr std::size_t directions = 64, inputs = 9, outputs = 6;
 /// in: wo, wi, u0, u1, u2; out: pdf of wi, sum of the components' values there, sampled direction's
 /// z (0 for the mirror), its pdf, its length, 1 for the mirror.
 constexpr const char* source = R"(
-#include "kernels/layer_stack.h"
+#include "kernels/stack/layer_stack.h"
 __kernel void triple(__global const float* in, __global float* out, uint count,
                      __global const MaterialRecord* materials, __global const LayerRecord* layers,
                      __global const LobeRecord* lobes, __global const float* tables,

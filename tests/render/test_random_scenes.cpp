@@ -95,8 +95,8 @@ TEST(RandomScenes, ResidualThatEndsAtAnAngleTakesNoLightAway) {
 
 TEST(RandomScenes, WhiteFurnaceNeverShinesBrighterThanItsWalls) {
     // Radiance 1 from everywhere; what adding holds at one direction is at most 1 but for the
-    // tables over angles (1e-3), Oren-Nayar's own excess (kernels/oren_nayar.h) and the noise of
-    // sampling lobes, which the mean over 30 pixels of 64 samples has below 3 %.
+    // tables over angles (1e-3), Oren-Nayar's own excess (kernels/scatter/oren_nayar.h) and the
+    // noise of sampling lobes, which the mean over 30 pixels of 64 samples has below 3 %.
     const int count = is_full_run() ? 300 : 12;
     RandomMaterials random(23, is_full_run() ? 60 : 1);
     for (int i = 0; i < count; ++i) {

@@ -1,7 +1,7 @@
 // layer_stack_sample against layer_stack_pdf, compiled in double, over the tables that the kernels
 // get: chi-square over half vectors.
-#include "host/render/scene_tables.h"
-#include "kernels/layer_stack.h"
+#include "host/render/tables/scene_tables.h"
+#include "kernels/stack/layer_stack.h"
 #include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "host/device/device.h"
-#include "host/render/renderer.h"
-#include "host/scene/scene.h"
+#include "host/render/wavefront/renderer.h"
+#include "host/scene/model/scene.h"
 
 namespace reradiant::test {
 

@@ -1,6 +1,6 @@
-#include "host/render/scene_tables.h"
-#include "host/spectral/rgb_basis.h"
-#include "kernels/texture.h"
+#include "host/render/tables/scene_tables.h"
+#include "host/spectral/colour/rgb_basis.h"
+#include "kernels/scene/texture.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>

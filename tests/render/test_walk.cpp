@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/render/scene_tables.h"
+#include "host/base/error.h"
+#include "host/render/tables/scene_tables.h"
 #include "tests/render/walk_strips.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "host/layers/walk_estimate.h"
+#include "host/layers/walk/walk_estimate.h"
 #include "tests/render/walk_strips.h"
 
 #include <gtest/gtest.h>

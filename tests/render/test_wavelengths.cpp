@@ -1,5 +1,5 @@
 #include "host/measure/measure.h"
-#include "host/render/wavelength_plan.h"
+#include "host/render/plan/wavelength_plan.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>

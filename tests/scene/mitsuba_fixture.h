@@ -2,7 +2,7 @@
 
 #include "tests/scene/scratch.h"
 
-#include "host/scene/mitsuba_import.h"
+#include "host/scene/mitsuba/mitsuba_import.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/error.h"
-#include "host/scene/scene.h"
+#include "host/base/error.h"
+#include "host/scene/model/scene.h"
 
 #include <gtest/gtest.h>
 

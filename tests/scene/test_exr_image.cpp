@@ -1,5 +1,5 @@
-#include "host/scene/image_io.h"
-#include "host/spectral/colour.h"
+#include "host/scene/images/image_io.h"
+#include "host/spectral/colour/colour.h"
 #include "tests/scene/scratch.h"
 
 #include <ImfChannelList.h>

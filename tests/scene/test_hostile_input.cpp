@@ -1,4 +1,4 @@
-#include "host/scene/load_state.h"
+#include "host/scene/toml/load_state.h"
 #include "tests/scene/scratch.h"
 
 #include <chrono>

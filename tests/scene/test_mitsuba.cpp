@@ -1,6 +1,6 @@
 #include "tests/scene/mitsuba_fixture.h"
 
-#include "host/spectral/colour.h"
+#include "host/spectral/colour/colour.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,6 @@
 #include "tests/scene/scratch.h"
 
-#include "host/spectral/kubelka_munk.h"
+#include "host/spectral/matrix/kubelka_munk.h"
 
 using namespace reradiant;
 using namespace reradiant::testing;

@@ -1,6 +1,6 @@
 #include "tests/scene/scratch.h"
 
-#include "host/spectral/colour.h"
+#include "host/spectral/colour/colour.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "host/scene/scene.h"
+#include "host/scene/model/scene.h"
 
 #include <gtest/gtest.h>
 

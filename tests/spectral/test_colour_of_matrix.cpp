@@ -1,5 +1,5 @@
-#include "host/spectral/colour_of_matrix.h"
-#include "host/spectral/matrix_io.h"
+#include "host/spectral/colour/colour_of_matrix.h"
+#include "host/spectral/files/matrix_io.h"
 #include "tests/spectral/synthetic_recipes.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/spectral/colour_polygons.h"
+#include "host/base/error.h"
+#include "host/spectral/colour/colour_polygons.h"
 #include "tests/spectral/scratch_folder.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "host/spectral/matrix_io.h"
+#include "host/spectral/files/matrix_io.h"
 #include "tests/spectral/refusal.h"
 #include "tests/spectral/scratch_folder.h"
 

@@ -1,4 +1,4 @@
-#include "host/spectral/grid.h"
+#include "host/spectral/spectrum/grid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "host/spectral/kubelka_munk.h"
+#include "host/spectral/matrix/kubelka_munk.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/spectral/matrix_io.h"
+#include "host/base/error.h"
+#include "host/spectral/files/matrix_io.h"
 #include "tests/spectral/refusal.h"
 #include "tests/spectral/scratch_folder.h"
 

@@ -1,6 +1,6 @@
-#include "host/spectral/matrix_evidence.h"
-#include "host/spectral/matrix_io.h"
-#include "host/spectral/matrix_warnings.h"
+#include "host/spectral/evidence/matrix_evidence.h"
+#include "host/spectral/evidence/matrix_warnings.h"
+#include "host/spectral/files/matrix_io.h"
 #include "tests/spectral/scratch_folder.h"
 
 #include <cmath>

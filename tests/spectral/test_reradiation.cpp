@@ -1,4 +1,4 @@
-#include "host/spectral/reradiation.h"
+#include "host/spectral/matrix/reradiation.h"
 
 #include <gtest/gtest.h>
 

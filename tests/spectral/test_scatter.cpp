@@ -1,5 +1,5 @@
-#include "host/spectral/scatter_detection.h"
-#include "host/spectral/scatter_warnings.h"
+#include "host/spectral/evidence/scatter_detection.h"
+#include "host/spectral/evidence/scatter_warnings.h"
 #include "tests/full_run.h"
 #include "tests/spectral/scatter_cases.h"
 

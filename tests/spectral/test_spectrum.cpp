@@ -1,4 +1,4 @@
-#include "host/spectral/spectrum.h"
+#include "host/spectral/spectrum/spectrum.h"
 
 #include <gtest/gtest.h>
 

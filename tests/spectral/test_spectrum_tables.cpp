@@ -1,5 +1,5 @@
-#include "host/spectral/matrix_io.h"
-#include "host/spectral/number_table.h"
+#include "host/spectral/files/matrix_io.h"
+#include "host/spectral/text/number_table.h"
 #include "tests/spectral/refusal.h"
 #include "tests/spectral/scratch_folder.h"
 

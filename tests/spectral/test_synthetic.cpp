@@ -1,6 +1,6 @@
-#include "host/paths.h"
-#include "host/spectral/colour.h"
-#include "host/spectral/matrix_io.h"
+#include "host/base/paths.h"
+#include "host/spectral/colour/colour.h"
+#include "host/spectral/files/matrix_io.h"
 #include "tests/spectral/synthetic_recipes.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/error.h"
-#include "host/study/study_file.h"
+#include "host/base/error.h"
+#include "host/study/study/study_file.h"
 
 #include <gtest/gtest.h>
 

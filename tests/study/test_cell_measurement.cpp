@@ -1,6 +1,6 @@
-#include "host/study/cell_measurement.h"
+#include "host/study/study/cell_measurement.h"
 
-#include "host/spectral/colour.h"
+#include "host/spectral/colour/colour.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/render/renderer.h"
+#include "host/render/wavefront/renderer.h"
 
 #include <cstddef>
 

@@ -3,9 +3,9 @@
 //
 //     table_fit_measured [FOLDER]
 
-#include "host/atomic_file.h"
-#include "host/error.h"
-#include "host/fit/fit.h"
+#include "host/base/atomic_file.h"
+#include "host/base/error.h"
+#include "host/fit/result/fit.h"
 #include "host/report/svg.h"
 
 #include <fmt/format.h>

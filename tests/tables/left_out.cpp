@@ -5,9 +5,9 @@
 // three standard errors of their tile means (Sidak). A second table has the price of every feature
 // alone: the reference study, which needs few, with one more at a time.
 #include "host/device/device.h"
-#include "host/render/render_features.h"
-#include "host/render/renderer.h"
-#include "host/scene/scene.h"
+#include "host/render/plan/render_features.h"
+#include "host/render/wavefront/renderer.h"
+#include "host/scene/model/scene.h"
 #include "tests/layers/walk_statistics.h"
 #include "tests/tables/built_kernels.h"
 

@@ -1,6 +1,6 @@
 #include "tests/tables/recovery_cases.h"
 
-#include "host/fit/synth_band.h"
+#include "host/fit/synth/synth_band.h"
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/fit/synth.h"
+#include "host/fit/synth/synth.h"
 
 namespace reradiant {
 

@@ -40,7 +40,8 @@ TEST_F(CheckCommand, EndsWithThreeWhenAFunctionFails) {
         replaced(file_bytes(file), "r = REAL(0.5) *", "r = REAL(0.51) *"));
     const ProgramResult result = run(quick, "RERADIANT_DATA=data");
     EXPECT_EQ(result.exit_code, 3);
-    EXPECT_NE(result.errors.find("kernels/fresnel.h: fresnel_dielectric"), std::string::npos)
+    EXPECT_NE(result.errors.find("kernels/scatter/fresnel.h: fresnel_dielectric"),
+              std::string::npos)
         << result.errors;
 }
 

@@ -2,8 +2,8 @@
 // pixels, lights and triangles. Each is a small render of one study with one number changed; the
 // counters are what was done in a second of the render proper, and what was needed before it.
 #include "host/device/device.h"
-#include "host/render/renderer.h"
-#include "host/scene/scene.h"
+#include "host/render/wavefront/renderer.h"
+#include "host/scene/model/scene.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,11 +1,11 @@
 // How much more a render costs than its rays: renders a scene, records every ray, and lets Embree
 // trace them alone. One line a number of bands, medians over repetitions that take turns, so that
 // ratios hold on a machine that others use too.
+#include "host/base/error.h"
 #include "host/device/device.h"
-#include "host/error.h"
 #include "host/geometry/geometry.h"
-#include "host/render/renderer.h"
-#include "host/scene/scene.h"
+#include "host/render/wavefront/renderer.h"
+#include "host/scene/model/scene.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

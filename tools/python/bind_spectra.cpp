@@ -1,8 +1,8 @@
 #include "host/report/svg.h"
-#include "host/spectral/colour.h"
-#include "host/spectral/matrix_io.h"
-#include "host/spectral/spectrum.h"
-#include "host/spectral/wavelength_unit.h"
+#include "host/spectral/colour/colour.h"
+#include "host/spectral/files/matrix_io.h"
+#include "host/spectral/spectrum/spectrum.h"
+#include "host/spectral/text/wavelength_unit.h"
 #include "tools/python/bindings.h"
 #include "tools/python/values.h"
 
@@ -16,7 +16,8 @@ namespace reradiant::python {
 
 namespace {
 
-/// What a scene file takes wavelengths from (CHECKED_FROM_NM of host/scene/spectrum_reader.cpp).
+/// What a scene file takes wavelengths from (CHECKED_FROM_NM of
+/// host/scene/toml/spectrum_reader.cpp).
 constexpr int sampled_from_nm = 200, sampled_to_nm = 1000;
 
 /// A spectrum as a SPECTRUM of a scene file: its boxes as lines, the rest as a table with every

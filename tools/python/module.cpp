@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/scene/scene.h"
+#include "host/base/error.h"
+#include "host/scene/model/scene.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
 

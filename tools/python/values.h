@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/grid.h"
+#include "host/spectral/spectrum/grid.h"
 
 #include <nlohmann/json.hpp>
 #include <pybind11/numpy.h>

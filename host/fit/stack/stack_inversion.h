@@ -1,0 +1,57 @@
+#pragma once
+
+#include "host/fit/data/bispectral_data.h"
+#include "host/fit/result/shared_errors.h"
+#include "host/layers/stack/stack.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+/// What is not known about the stack above a sample.
+struct UnknownLayers {
+    bool thickness = false;  ///< of every layer that absorbs, one factor each
+    bool absorption = false; ///< the scale of every layer's absorption, one factor each
+    bool ior = false;        ///< of every layer, one addend each
+
+    bool any() const { return thickness || absorption || ior; }
+};
+/// A list like `thickness,ior`; input Error for another name.
+UnknownLayers unknown_layers_from_names(const std::vector<std::string>& names);
+
+/// What the data say about the unknown numbers of a stack.
+struct StackEstimate {
+    std::vector<std::string> names; ///< "thickness of layer 1", ...
+    Eigen::VectorXd value, sigma;   ///< sigma infinite: the data do not determine it
+    Eigen::MatrixXd correlation;    ///< of the numbers; NaN where undetermined
+    int rank = 0;                   ///< numbers that the data tell apart
+    double reduced_chi_squared = 0.0;
+    /// One sentence a group of numbers that the data cannot tell apart; empty when all are.
+    std::vector<std::string> ambiguities;
+};
+
+/// Data of a sample under a stack turned into those of the bare substrate.
+struct SubstrateData {
+    BispectralData data; ///< one block without geometry; of its errors those of single entries
+    LayerStack stack;    ///< with the unknown numbers as found
+    StackEstimate estimate;
+    std::optional<SharedErrors> errors; ///< of `data`, all of them; empty: there was no stack
+    bool noise_is_estimated = false;    ///< the standard errors of `data` come from an estimate
+    std::vector<std::string> notes;
+};
+
+/// Inverts the model `adding`: every block is pi f = T_up T_down B / n_k^2 with B = M (I - diag(r)
+/// M)^-1, so B is the weighted mean over the blocks and M = B (I + diag(r) B)^-1. Unknown numbers
+/// of the stack are those that make the blocks agree best (Ceres; B itself is projected out, Golub
+/// and Pereyra 1973). Emission below the excitation is dark unless `anti_stokes`, so that its noise
+/// does not enter; so are emission bands that were not measured, which a note says.
+/// Input Error when blocks without geometry meet a stack, when grids share no common one, or when
+/// numbers are unknown but there is one geometry only.
+SubstrateData invert_stack(const BispectralData& data, const LayerStack& stack,
+                           const UnknownLayers& unknown, bool anti_stokes = false);
+
+} // namespace reradiant

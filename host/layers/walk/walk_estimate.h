@@ -1,0 +1,40 @@
+#pragma once
+
+#include "host/base/interruption.h"
+#include "host/layers/walk/walk.h"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace reradiant {
+
+/// Means over many walks and their standard errors, entry by entry.
+struct WalkEstimate {
+    WalkTally mean, standard_error;
+};
+
+/// Walks are run in blocks, whose means give the standard errors (to 4 %).
+inline constexpr std::uint64_t walk_blocks = 256;
+
+/// How far an estimate is, exactly: blocks that every group of them has done, walks of the next
+/// one, and what they add up to. Numbers alone, to be kept in a file.
+struct WalkState {
+    std::uint64_t blocks = 0, walks = 0;
+    std::vector<double> numbers; ///< empty: nothing was done
+};
+
+/// Called between walks, a few times a second, and when all are done; `state` tells how far they
+/// are, and is dear.
+using WalkPause = std::function<void(bool is_done, const std::function<WalkState()>& state)>;
+
+/// Estimates what LayerWalk::eval means from `samples` walks, rounded up to full blocks. Parallel;
+/// the same for a seed whatever the number of threads, and whether it is done at once or goes on
+/// from the state that an earlier call with the same arguments told. Interrupted when `stop` is set
+/// meanwhile. Run-time Error for the state of another estimate.
+WalkEstimate estimate_walk(const LayerWalk& walk, const kernels::Vec3& wi,
+                           std::span<const kernels::Vec3> wo, std::uint64_t samples,
+                           std::uint64_t seed, StopFlag stop = nullptr, const WalkState& from = {},
+                           const WalkPause& pause = {});
+
+} // namespace reradiant

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "host/scene/model/scene.h"
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace reradiant {
+
+/// Reads a mesh by its ending, .ply (ascii, binary little and big endian) or .obj. Faces of
+/// more than three corners are cut into triangles (triangulate_polygon). Throws an input Error with
+/// line and column (ascii) or byte offset (binary) that names the vertex or face: not finite,
+/// beyond 1e18, index out of range, a polygon that crosses itself, truncated, counts that the file
+/// cannot hold. Memory is taken in proportion to the file's size, never to a count that it claims.
+MeshShape read_mesh(const std::filesystem::path& file);
+
+/// The same from bytes that were read; `file` gives the ending and the name in messages.
+MeshShape parse_mesh(const std::filesystem::path& file, std::string_view bytes);
+MeshShape parse_ply(const std::filesystem::path& file, std::string_view bytes);
+MeshShape parse_obj(const std::filesystem::path& file, std::string_view bytes);
+
+/// Text without its byte-order mark; input Error for one of UTF-16 or UTF-32, by name.
+std::string_view without_byte_order_mark(const std::filesystem::path& file, std::string_view bytes);
+
+/// Appends the fan of a convex face whose corners are vertex numbers.
+void append_fan(const std::vector<std::uint32_t>& corners, MeshShape& mesh);
+/// Appends a face of any form: its vertex numbers and where they lie. Input Error at `at` that
+/// names face `number` for a polygon that triangulate_polygon refuses.
+void append_face(const std::vector<std::uint32_t>& vertices, std::span<const Vector3> corners,
+                 std::uint64_t number, const SourcePosition& at, MeshShape& mesh);
+
+/// Normals at the vertices of a mesh without: those of its triangles weighted by their angle there
+/// (Thuermer and Wuethrich 1998). A vertex of no area gets zero, which means: shade with the
+/// triangle's own.
+void add_smooth_normals(MeshShape& mesh);
+
+/// A coordinate as float; input Error at `at` naming it unless finite and at most 1e18 in size.
+float mesh_coordinate(double value, const SourcePosition& at, const std::string& name);
+
+} // namespace reradiant
