@@ -1,15 +1,15 @@
 // Stage 3: at each hit, record a vertex, sample one light and one direction. Only scalars here:
 // directions, pdfs, weights. Wavelengths come in `gather`.
 #include "kernels/core/features.h"
-#include "kernels/stack/layer_stack.h"
-#include "kernels/scene/lights.h"
 #include "kernels/core/portable.h"
 #include "kernels/core/random.h"
 #include "kernels/core/sampling.h"
 #include "kernels/core/sequence.h"
+#include "kernels/core/shared.h"
+#include "kernels/scene/lights.h"
+#include "kernels/stack/layer_stack.h"
 #include "kernels/stages/shade_lights.h"
 #include "kernels/stages/shade_surface.h"
-#include "kernels/core/shared.h"
 #if FEATURE_WALK
 #include "kernels/walk/walk.h"
 #endif

@@ -44,9 +44,8 @@ struct MeasureOptions {
 };
 
 std::filesystem::path material_file(const MeasureOptions& options) {
-    if (options.preset.empty()) {
+    if (options.preset.empty())
         return options.material;
-    }
     const std::vector<std::string> known = preset_names();
     if (std::find(known.begin(), known.end(), options.preset) == known.end()) {
         throw_input_error({}, fmt::format("no preset is called '{}'", options.preset),
@@ -141,9 +140,8 @@ std::optional<Measurement> measure_file(const MeasureOptions& options,
     try {
         return measure_and_keep(options, material, request, common.quiet);
     } catch (const Error& error) {
-        if (error.kind() == Error::Kind::Input && error.position().file.empty()) {
+        if (error.kind() == Error::Kind::Input && error.position().file.empty())
             throw_input_error({file.string()}, error.what());
-        }
         throw;
     }
 }
@@ -158,9 +156,8 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
     request.samples = options.samples;
     request.seed = common.seed;
     request.memory_limit_bytes = options.memory_limit_bytes;
-    if (!options.bands.empty()) {
+    if (!options.bands.empty())
         request.bands = parse_bands_option(options.bands);
-    }
     check_outputs(common, {{"-o", options.output, {".csv"}}}, {options.material});
     // what computes in parallel asks the library how many threads there are
     std::optional<tbb::global_control> threads;
@@ -184,9 +181,8 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
     if (!common.quiet) {
         fmt::print("{}: {} rows, model {}\n", options.output.string(), measurement.rows.size(),
                    model_name(measurement.model));
-        for (const std::string& note : measurement.notes) {
+        for (const std::string& note : measurement.notes)
             fmt::print("{}\n", note);
-        }
     }
     return 0;
 }

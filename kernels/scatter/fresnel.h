@@ -17,12 +17,10 @@ DEVICE_FUNCTION real fresnel_dielectric(real cos_i, real eta) {
     real excess = (eta - REAL(1.0)) * (eta + REAL(1.0));
     real g2 = excess + cos_i * cos_i;
     real g, s, p, r;
-    if (eta == REAL(1.0)) {
+    if (eta == REAL(1.0))
         return REAL(0.0);
-    }
-    if (g2 <= REAL(0.0)) {
+    if (g2 <= REAL(0.0))
         return REAL(1.0);
-    }
     g = sqrt(g2);
     s = cos_i + g;
     p = eta * eta * cos_i + g;
@@ -38,9 +36,8 @@ DEVICE_FUNCTION real fresnel_dielectric(real cos_i, real eta) {
 DEVICE_FUNCTION real fresnel_cos_transmitted(real cos_i, real eta) {
     real g2 = (eta - REAL(1.0)) * (eta + REAL(1.0)) + cos_i * cos_i;
     real c;
-    if (g2 <= REAL(0.0)) {
+    if (g2 <= REAL(0.0))
         return REAL(0.0);
-    }
     c = sqrt(g2) / eta;
     return c < REAL(1.0) ? c : REAL(1.0);
 }
@@ -60,9 +57,8 @@ DEVICE_FUNCTION real fresnel_conductor(real cos_i, real eta, real k) {
     real product = eta * k;
     real modulus = sqrt(q2 * q2 + REAL(4.0) * product * product);
     real a, b, difference, s, p, bc;
-    if (!(product > REAL(0.0))) {
+    if (!(product > REAL(0.0)))
         return k > REAL(0.0) ? REAL(1.0) : fresnel_dielectric(cos_i, eta);
-    }
     if (q2 > REAL(0.0)) {
         a = sqrt(REAL(0.5) * (modulus + q2));
         b = product / a;

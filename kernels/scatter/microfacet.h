@@ -21,9 +21,8 @@ DEVICE_FUNCTION real microfacet_d(int distribution, real alpha, Vec3 h) {
     real sin2 = h.x * h.x + h.y * h.y;
     real cos2 = h.z * h.z;
     real a2 = alpha * alpha;
-    if (h.z <= REAL(0.0)) {
+    if (h.z <= REAL(0.0))
         return REAL(0.0);
-    }
     if (distribution == MICROFACET_GGX) {
         real q = cos2 + sin2 / a2;
         return INV_PI_REAL / (a2 * q * q);
@@ -31,9 +30,8 @@ DEVICE_FUNCTION real microfacet_d(int distribution, real alpha, Vec3 h) {
     if (distribution == MICROFACET_BECKMANN) {
         real t = sin2 / (cos2 * a2);
         // exp(-t) / cos^4 is below the smallest number there; cos^4 may be 0
-        if (!(t < REAL(700.0))) {
+        if (!(t < REAL(700.0)))
             return REAL(0.0);
-        }
         return INV_PI_REAL * exp(-t) / (a2 * cos2 * cos2);
     }
     {
@@ -47,9 +45,8 @@ DEVICE_FUNCTION real microfacet_d(int distribution, real alpha, Vec3 h) {
 /// where Lambda itself is infinite. Smith's Lambda, Heitz 2014 eqs. 72 (ggx) and 66 (beckmann).
 DEVICE_FUNCTION real microfacet_lambda_cos(int distribution, real alpha, Vec3 w) {
     real s = alpha * sqrt(w.x * w.x + w.y * w.y);
-    if (s <= REAL(0.0)) {
+    if (s <= REAL(0.0))
         return REAL(0.0);
-    }
     if (distribution == MICROFACET_BECKMANN) {
         real a = w.z / s;
         // 1 / sqrt(pi); the difference is positive but rounds below zero where it is negligible
@@ -94,9 +91,8 @@ DEVICE_FUNCTION real microfacet_g2(int distribution, real alpha, Vec3 wi, Vec3 w
 /// both directions are above the surface (Torrance and Sparrow 1967; Walter et al. 2007 eq. 20).
 DEVICE_FUNCTION real microfacet_reflection(int distribution, real alpha, Vec3 wi, Vec3 wo) {
     Vec3 h;
-    if (wi.z <= REAL(0.0) || wo.z <= REAL(0.0)) {
+    if (wi.z <= REAL(0.0) || wo.z <= REAL(0.0))
         return REAL(0.0);
-    }
     h = vec3_normalise(vec3_add(wi, wo));
     return REAL(0.25) * microfacet_d(distribution, alpha, h) *
            microfacet_g2_over_cosines(distribution, alpha, wi, wo, h);
@@ -150,9 +146,8 @@ DEVICE_FUNCTION real microfacet_beckmann_slope(real cos_theta, real sin_theta, r
     real half_sqrt_pi = REAL(0.88622692545275801365);
     real target, x;
     int step;
-    if (high <= low) {
+    if (high <= low)
         return high;
-    }
     u = fmin(fmax(u, REAL(1e-7)), REAL(0.9999999));
     target =
         u * (cos_theta * half_sqrt_pi * erfc(-high) + REAL(0.5) * sin_theta * exp(-high * high));
@@ -161,21 +156,18 @@ DEVICE_FUNCTION real microfacet_beckmann_slope(real cos_theta, real sin_theta, r
         (REAL(1.0) - fabs(cos_theta)) * sqrt(-log(u));
     for (step = 0; step < 24; ++step) {
         real e, value, slope, next;
-        if (!(x > low && x < high)) {
+        if (!(x > low && x < high))
             x = REAL(0.5) * (low + high);
-        }
         e = exp(-x * x);
         value = cos_theta * half_sqrt_pi * erfc(-x) + REAL(0.5) * sin_theta * e - target;
         slope = e * (cos_theta - x * sin_theta);
-        if (value > REAL(0.0)) {
+        if (value > REAL(0.0))
             high = x;
-        } else {
+        else
             low = x;
-        }
         next = x - value / slope;
-        if (fabs(next - x) < REAL(1e-6)) {
+        if (fabs(next - x) < REAL(1e-6))
             break;
-        }
         x = next;
     }
     return x;
@@ -208,12 +200,10 @@ DEVICE_FUNCTION Vec3 microfacet_sample_beckmann(real alpha, Vec3 wo, real u1, re
 /// normals visible to wo (wo may point below the surface too, for walks between facets); blinn:
 /// from D(h) h.z, whose weights in reflection are bounded by 2 thanks to the V-cavity's G.
 DEVICE_FUNCTION Vec3 microfacet_sample(int distribution, real alpha, Vec3 wo, real u1, real u2) {
-    if (distribution == MICROFACET_GGX) {
+    if (distribution == MICROFACET_GGX)
         return microfacet_sample_ggx(alpha, wo, u1, u2);
-    }
-    if (distribution == MICROFACET_BECKMANN) {
+    if (distribution == MICROFACET_BECKMANN)
         return microfacet_sample_beckmann(alpha, wo, u1, u2);
-    }
     {
         // h.z^(e + 2) = 1 - u1 and e + 2 = 2 / alpha^2
         real log_cos2 = alpha * alpha * log1p(-fmin(u1, REAL(0.99999994)));
@@ -227,9 +217,8 @@ DEVICE_FUNCTION Vec3 microfacet_sample(int distribution, real alpha, Vec3 wo, re
 /// G1(wo) (wo.h) D(h) / wo.z (Heitz and d'Eon 2014 eq. 2), 0 for facets turned away.
 DEVICE_FUNCTION real microfacet_pdf(int distribution, real alpha, Vec3 wo, Vec3 h) {
     real d = microfacet_d(distribution, alpha, h);
-    if (distribution == MICROFACET_BLINN) {
+    if (distribution == MICROFACET_BLINN)
         return d * fmax(h.z, REAL(0.0));
-    }
     return d * fmax(vec3_dot(wo, h), REAL(0.0)) /
            (wo.z + microfacet_lambda_cos(distribution, alpha, wo));
 }

@@ -23,9 +23,8 @@ DEVICE_FUNCTION real oren_nayar_value(real sigma, Vec3 wi, Vec3 wo) {
     // sin_i sin_o cos(phi_i - phi_o), to be divided by the cosine of the smaller angle
     real along = wi.x * wo.x + wi.y * wo.y;
     real shape;
-    if (!(wi.z > REAL(0.0)) || !(wo.z > REAL(0.0))) {
+    if (!(wi.z > REAL(0.0)) || !(wo.z > REAL(0.0)))
         return REAL(0.0);
-    }
     shape = along > REAL(0.0) ? along / fmax(wi.z, wo.z) : REAL(0.0);
     return INV_PI_REAL * (oren_nayar_a(sigma) + oren_nayar_b(sigma) * shape);
 }

@@ -74,9 +74,8 @@ DEVICE_FUNCTION real thin_film_reflectance(real cos_i, real n_incident, real n_f
                    ? fresnel_conductor(cos_i, n_base / n_incident, k_base / n_incident)
                    : fresnel_dielectric(cos_i, n_base / n_incident);
     }
-    if (!(cos_i > REAL(0.0)) || (!(k_base > REAL(0.0)) && gb2 <= REAL(0.0))) {
+    if (!(cos_i > REAL(0.0)) || (!(k_base > REAL(0.0)) && gb2 <= REAL(0.0)))
         return REAL(1.0);
-    }
     // gb = n cos of the base: the root with positive real and imaginary parts
     modulus = sqrt(gb2 * gb2 + eb_im * eb_im);
     if (gb2 > REAL(0.0)) {

@@ -38,11 +38,10 @@ DEVICE_FUNCTION uint walk_last_below(GLOBAL_CONST shared_float* numbers, uint co
     uint low = 0u, high = count;
     while (high - low > 1u) {
         const uint middle = (low + high) / 2u;
-        if ((real)numbers[middle] <= x) {
+        if ((real)numbers[middle] <= x)
             low = middle;
-        } else {
+        else
             high = middle;
-        }
     }
     return low;
 }

@@ -49,9 +49,8 @@ DEVICE_FUNCTION real walk_lambda(WalkSurface surface, Vec3 w) {
 /// a few alpha below, where enough digits are left).
 DEVICE_FUNCTION real walk_visible_area(WalkSurface surface, Vec3 v) {
     const real s = surface.alpha * sqrt(v.x * v.x + v.y * v.y);
-    if (v.z < REAL(0.0) && surface.distribution == MICROFACET_GGX) {
+    if (v.z < REAL(0.0) && surface.distribution == MICROFACET_GGX)
         return REAL(0.5) * s * s / (sqrt(v.z * v.z + s * s) - v.z);
-    }
     if (v.z < REAL(0.0)) {
         const real a = v.z / s;
         // 1 / sqrt(pi)
@@ -91,17 +90,15 @@ DEVICE_FUNCTION WalkRefraction walk_refraction(WalkSurface surface, Vec3 v, Vec3
     real denominator;
     r.h = vec3(REAL(0.0), REAL(0.0), REAL(1.0));
     r.cos_i = r.cos_t = r.jacobian = REAL(0.0);
-    if (!(vec3_dot(h, h) > REAL(0.0))) {
+    if (!(vec3_dot(h, h) > REAL(0.0)))
         return r;
-    }
     h = vec3_normalise(h);
     r.h = h.z < REAL(0.0) ? vec3_scale(h, REAL(-1.0)) : h;
     r.cos_i = vec3_dot(v, r.h);
     r.cos_t = -vec3_dot(through, r.h);
     denominator = r.cos_i - surface.eta * r.cos_t;
-    if (r.cos_i > REAL(0.0) && r.cos_t > REAL(0.0) && denominator != REAL(0.0)) {
+    if (r.cos_i > REAL(0.0) && r.cos_t > REAL(0.0) && denominator != REAL(0.0))
         r.jacobian = square(surface.eta / denominator) * r.cos_t;
-    }
     return r;
 }
 
@@ -110,9 +107,8 @@ DEVICE_FUNCTION real walk_reflection_density(WalkSurface surface, Vec3 v, Vec3 w
     const Vec3 h = walk_half_reflected(v, w);
     const real area = walk_visible_area(surface, v);
     const real cos_i = vec3_dot(v, h);
-    if (!(area > REAL(0.0)) || !(cos_i > REAL(0.0))) {
+    if (!(area > REAL(0.0)) || !(cos_i > REAL(0.0)))
         return REAL(0.0);
-    }
     return walk_reflectance(surface, cos_i) * microfacet_d(surface.distribution, surface.alpha, h) /
            (REAL(4.0) * area);
 }
@@ -121,9 +117,8 @@ DEVICE_FUNCTION real walk_reflection_density(WalkSurface surface, Vec3 v, Vec3 w
 DEVICE_FUNCTION real walk_refraction_density(WalkSurface surface, Vec3 v, Vec3 w) {
     const WalkRefraction r = walk_refraction(surface, v, w);
     const real area = walk_visible_area(surface, v);
-    if (!(r.jacobian > REAL(0.0)) || !(area > REAL(0.0))) {
+    if (!(r.jacobian > REAL(0.0)) || !(area > REAL(0.0)))
         return REAL(0.0);
-    }
     return (REAL(1.0) - walk_reflectance(surface, r.cos_i)) * r.cos_i / area * r.jacobian *
            microfacet_d(surface.distribution, surface.alpha, r.h);
 }
@@ -188,9 +183,8 @@ DEVICE_FUNCTION real walk_escape(WalkSurface surface, Vec3 w, real height) {
 /// 2016 eq. 19). u uniform in [0, 1).
 DEVICE_FUNCTION real walk_next_height(WalkSurface surface, Vec3 w, real height, real u) {
     if (w.z > REAL(0.0)) {
-        if (u < walk_escape(surface, w, height)) {
+        if (u < walk_escape(surface, w, height))
             return REAL(2.0);
-        }
         return walk_bounded_height(height * exp(-log(u) / walk_lambda(surface, w)));
     }
     return walk_bounded_height(

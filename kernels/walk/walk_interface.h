@@ -117,9 +117,8 @@ DEVICE_FUNCTION WalkDeparture walk_one_facet(WalkSurface surface, Vec3 v, WalkRa
     const Vec3 h = walk_sample_facet(surface, v, u1, u2, walk_uniform(random));
     const real cos_i = vec3_dot(v, h);
     departure.weight = REAL(0.0);
-    if (!(cos_i > REAL(0.0))) {
+    if (!(cos_i > REAL(0.0)))
         return departure;
-    }
     departure.passed = !(walk_uniform(random) < walk_reflectance(surface, cos_i));
     departure.direction = walk_leave_facet(surface, v, h, departure.passed);
     if (departure.direction.z > REAL(0.0)) {
@@ -150,12 +149,10 @@ DEVICE_FUNCTION WalkDeparture walk_cavities(WalkSurface surface, Vec3 v, WalkTar
         departure.weight /= REAL(1.0) - lost;
     }
     walk_single_densities(surface, v, targets, &departure);
-    if (targets.has_same) {
+    if (targets.has_same)
         departure.same_density += walk_cavity_density(surface, v.z, 0, targets.same.z);
-    }
-    if (targets.has_beyond) {
+    if (targets.has_beyond)
         departure.beyond_density += walk_cavity_density(surface, v.z, 1, targets.beyond.z);
-    }
     return departure;
 }
 
@@ -182,9 +179,8 @@ DEVICE_FUNCTION WalkBetweenFacets walk_between_facets(WalkSurface surface, Vec3 
 /// first one's height is averaged over: 1 / (1 + Lambda + Lambda) in all.
 DEVICE_FUNCTION real walk_density_back(const WalkBetweenFacets* walk, Vec3 w) {
     const real density = walk_reflection_density(walk->surface, walk->v, w);
-    if (walk->order == 0u) {
+    if (walk->order == 0u)
         return density * walk_single_share(walk->surface, walk->v, walk->v, w, REAL(1.0));
-    }
     return density * walk_escape(walk->surface, w, walk->height);
 }
 
@@ -231,9 +227,8 @@ DEVICE_FUNCTION int walk_to_next_facet(WalkBetweenFacets* walk, Vec3 h, int pass
 
 /// 1 to go on: late facets survive with a probability that the weight is divided by.
 DEVICE_FUNCTION int walk_late_survives(uint order, WalkRandom* random, real* weight) {
-    if (order < WALK_FREE_FACETS) {
+    if (order < WALK_FREE_FACETS)
         return 1;
-    }
     *weight /= WALK_LATE_SURVIVAL;
     return walk_uniform(random) < WALK_LATE_SURVIVAL;
 }
@@ -272,9 +267,8 @@ DEVICE_FUNCTION WalkDeparture walk_multiple(WalkSurface surface, Vec3 v, WalkTar
 /// Any interface between dielectrics.
 DEVICE_FUNCTION WalkDeparture walk_interface(WalkSurface surface, Vec3 v, WalkTargets targets,
                                              WalkRandom* random) {
-    if (!(surface.alpha > REAL(0.0)) || surface.eta == REAL(1.0)) {
+    if (!(surface.alpha > REAL(0.0)) || surface.eta == REAL(1.0))
         return walk_smooth(surface, v, random);
-    }
     return surface.multiple ? walk_multiple(surface, v, targets, random)
                             : walk_single(surface, v, targets, random);
 }

@@ -104,9 +104,8 @@ TEST(Factors, BandsCoverTheTruthWhenTermsAreByEvidence) {
                     runs;
         EXPECT_GE(mean, 0.90) << count;  // the bar of the project
         EXPECT_LE(mean, 0.995) << count; // of 4 runs: in 20 at most 0.99
-        if (is_full_run()) {
+        if (is_full_run())
             EXPECT_LE(mean, 0.99) << count;
-        }
     }
 }
 

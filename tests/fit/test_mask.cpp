@@ -54,9 +54,8 @@ TEST(MaskRules, AreReadAndWrittenAlike) {
     ASSERT_EQ(rules.boxes.size(), 1u);
     EXPECT_EQ(rules.boxes[0], (MaskBox{300.0, 350.0, 500.0, 560.0}));
     for (const char* const text : {"auto", "none", "first:10,box:300-350x500-560",
-                                   "auto,second:15.5,box:1-2x3-4,box:5-5x6-6"}) {
+                                   "auto,second:15.5,box:1-2x3-4,box:5-5x6-6"})
         EXPECT_EQ(mask_rules_text(mask_rules_from_text(text)), text);
-    }
 }
 
 TEST(MaskRules, AnythingElseIsRefused) {

@@ -66,9 +66,8 @@ TEST_P(MeasuredFit, FactorsOfRankThreeMeetTheBar) {
     EXPECT_LE(three.bytes, 1080u);
     EXPECT_LE(three.relative_rmse, GetParam().rank_3 + rounding);
     // 0.2 to 0.5 on a quiet machine.
-    if (is_full_run()) {
+    if (is_full_run())
         EXPECT_LE(three.seconds, 2.0);
-    }
 }
 
 /// CIBA12's photon balance binds, in a valley that falls by less than the noise for hundreds of

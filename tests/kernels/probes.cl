@@ -1,18 +1,18 @@
 // Device functions called over arrays, for comparison with the same source compiled in double.
 // Each probe reads `stride_in` floats an item and writes `stride_out`.
-#include "kernels/scene/camera.h"
 #include "kernels/core/features.h"
-#include "kernels/scatter/fresnel.h"
-#include "kernels/stack/layer_stack.h"
-#include "kernels/scene/lights.h"
-#include "kernels/scatter/microfacet.h"
 #include "kernels/core/portable.h"
 #include "kernels/core/random.h"
-#include "kernels/stack/reradiation.h"
 #include "kernels/core/sampling.h"
 #include "kernels/core/sequence.h"
 #include "kernels/core/shared.h"
 #include "kernels/core/table.h"
+#include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/microfacet.h"
+#include "kernels/scene/camera.h"
+#include "kernels/scene/lights.h"
+#include "kernels/stack/layer_stack.h"
+#include "kernels/stack/reradiation.h"
 #include "kernels/walk/walk_facets.h"
 
 #define ITEM                                                                                       \

@@ -119,9 +119,8 @@ TEST(RoughTransport, AgreesWithASlowWalkThroughWholeStacks) {
         }
         reference::Walker walker(101 + static_cast<unsigned>(k));
         double back = 0.0;
-        for (int i = 0; i < photons; ++i) {
+        for (int i = 0; i < photons; ++i)
             back += walker.from_substrate(stacks[k]).end == reference::Walker::End::Substrate;
-        }
         const double p = back / photons;
         EXPECT_NEAR(t->internal_reflectance(), p, 5.5 * std::sqrt(p * (1.0 - p) / photons) + 2e-3)
             << k;
@@ -217,7 +216,6 @@ TEST(RoughTransport, MayBeAskedFromParallelLoops) {
                                     Scattering::Single, 0.01 * k)})
                 ->transmission(1.0);
     });
-    for (std::size_t k = 2; k < found.size(); k += 2) {
+    for (std::size_t k = 2; k < found.size(); k += 2)
         EXPECT_LT(found[k], found[k - 2]);
-    }
 }

@@ -31,9 +31,8 @@ public:
     explicit ChandrasekharH(double w) : albedo_(w), values_(count, 1.0) {
         for (int step = 0; step < 200; ++step) {
             std::vector<double> next;
-            for (int i = 0; i < count; ++i) {
+            for (int i = 0; i < count; ++i)
                 next.push_back((*this)(node(i)));
-            }
             values_ = next;
         }
     }
@@ -158,9 +157,8 @@ TEST(ScatteringSlab, AgreesWithASlowWalk) {
             EXPECT_NEAR(t->specular_albedo(cos_deg(theta)), q, margin(q)) << k << " " << theta;
         }
         double back = 0.0;
-        for (int i = 0; i < photons; ++i) {
+        for (int i = 0; i < photons; ++i)
             back += walker.from_substrate(stacks[k]).end == reference::Walker::End::Substrate;
-        }
         EXPECT_NEAR(t->internal_reflectance(), back / photons, margin(back / photons)) << k;
     }
 }

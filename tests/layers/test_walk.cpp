@@ -77,9 +77,8 @@ TEST(Walk, AgreesWithAddingOverABispectralSubstrate) {
         {{cloudy_layer(1.5, 0.2, 0.1, 1.0, -0.4), plain_layer(1.8, 0.0, 0.1)}},
     };
     const auto comparisons = static_cast<double>(4 * stacks.size());
-    for (std::size_t k = 0; k < stacks.size(); ++k) {
+    for (std::size_t k = 0; k < stacks.size(); ++k)
         expect_adding(stacks[k], comparisons, samples(40000), k);
-    }
 }
 
 TEST(Walk, DispersiveStacksShiftTheirPathsWithTheWavelength) {
@@ -116,12 +115,10 @@ TEST(Walk, Case29ReversedLightHasTheSameValue) {
         const auto &m = there.mean.directional[0], &n = back.mean.directional[0];
         const auto &e = there.standard_error.directional[0],
                    &f = back.standard_error.directional[0];
-        for (const auto& [o, i] : {std::pair{0, 0}, {1, 0}, {1, 1}}) {
+        for (const auto& [o, i] : {std::pair{0, 0}, {1, 0}, {1, 1}})
             compare(m.diffuse(o, i), e.diffuse(o, i), n.diffuse(i, o), f.diffuse(i, o));
-        }
-        for (const int band : {0, 1}) {
+        for (const int band : {0, 1})
             compare(m.specular(band), e.specular(band), n.specular(band), f.specular(band));
-        }
     }
 }
 

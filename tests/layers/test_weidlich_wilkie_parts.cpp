@@ -65,9 +65,8 @@ double albedo(const Function& f, const Vec3& wi) {
             const Vec3 h = direction(theta, 360.0 * (k + 0.5) / sectors);
             const double c = kernels::vec3_dot(wi, h);
             const Vec3 wo = kernels::vec3_sub(kernels::vec3_scale(h, 2.0 * c), wi);
-            if (c > 0.0 && wo.z > 0.0) {
+            if (c > 0.0 && wo.z > 0.0)
                 sum += f(wi, wo) * wo.z * 4.0 * c * std::sin(theta * M_PI / 180.0);
-            }
         }
     }
     return sum * (0.5 * M_PI / rings) * (2.0 * M_PI / sectors);

@@ -61,13 +61,11 @@ double sidak_sigmas(int comparisons) {
 class HalfVectorCells {
 public:
     explicit HalfVectorCells(double alpha) {
-        for (const double t : {0.0, 0.3, 0.6, 0.9, 1.3, 2.0, 3.5}) {
+        for (const double t : {0.0, 0.3, 0.6, 0.9, 1.3, 2.0, 3.5})
             edges_.push_back(std::atan(t * alpha));
-        }
         const double last = edges_.back();
-        for (int k = 1; k <= 6; ++k) {
+        for (int k = 1; k <= 6; ++k)
             edges_.push_back(last + (0.5 * M_PI - last) * k / 6);
-        }
     }
     std::size_t count() const { return (edges_.size() - 1) * sectors; }
 
@@ -121,12 +119,10 @@ std::vector<double> found_cells(const LayeredBsdf& drawn, const LayeredBsdf& cla
     for (int i = 0; i < count; ++i) {
         const double u0 = uniform(generator), u1 = uniform(generator), u2 = uniform(generator);
         const LayeredBsdf::Sample sample = drawn.sample(w, {u0, u1, u2});
-        if (sample.is_delta || sample.w.z <= 0.0) {
+        if (sample.is_delta || sample.w.z <= 0.0)
             continue;
-        }
-        if (!(claimed.pdf(w, sample.w) > 0.0)) {
+        if (!(claimed.pdf(w, sample.w) > 0.0))
             return {};
-        }
         seen[cells.cell_of(w, sample.w)] += 1.0;
     }
     return seen;
@@ -141,9 +137,8 @@ double chi_square_sigmas(const LayeredBsdf& drawn, const LayeredBsdf& claimed, d
     const HalfVectorCells cells(alpha);
     const Vec3 w = at_degrees(theta);
     const std::vector<double> seen = found_cells(drawn, claimed, w, cells, count);
-    if (seen.empty()) {
+    if (seen.empty())
         return INFINITY;
-    }
     const std::vector<double> shares = cells.probabilities(claimed, w);
     double chi = 0.0, rare_seen = 0.0, rare_wanted = 0.0;
     int degrees = 0;
@@ -160,9 +155,8 @@ double chi_square_sigmas(const LayeredBsdf& drawn, const LayeredBsdf& claimed, d
             rare_wanted += wanted;
         }
     }
-    if (rare_wanted > 0.0) {
+    if (rare_wanted > 0.0)
         add(rare_seen, std::max(rare_wanted, 10.0));
-    }
     const double k = 2.0 / (9.0 * degrees);
     return (std::cbrt(chi / degrees) - (1.0 - k)) / std::sqrt(k);
 }
@@ -184,9 +178,8 @@ std::vector<Case> sampling_cases() {
             const LayerStack rough{{layer(1.5, alpha, d)}};
             const LayerStack two{{layer(1.5, alpha, d), layer(1.3, 0.3, d)}};
             const LayerStack smooth{{layer(1.5, 0.0, d)}};
-            if (d != Distribution::Blinn || degrees == 10.0) {
+            if (d != Distribution::Blinn || degrees == 10.0)
                 cases.push_back({name + ", adding", alpha, {rough, grey(0.5), one, Model::Adding}});
-            }
             cases.push_back({name + ", weidlich-wilkie",
                              alpha,
                              {two, grey(0.2, 0.4), one, Model::WeidlichWilkie}});
@@ -208,11 +201,10 @@ std::array<double, 2> sampled_albedo(const LayeredBsdf& bsdf, double theta, int 
         const double u0 = uniform(generator), u1 = uniform(generator), u2 = uniform(generator);
         const LayeredBsdf::Sample sample = bsdf.sample(w, {u0, u1, u2});
         double value = 0.0;
-        if (sample.is_delta) {
+        if (sample.is_delta)
             value = bsdf.delta(w.z).sum() / sample.pdf;
-        } else if (sample.w.z > 0.0) {
+        else if (sample.w.z > 0.0)
             value = bsdf.eval(w, sample.w).sum() * sample.w.z / sample.pdf;
-        }
         sum += value;
         squares += value * value;
     }
@@ -304,9 +296,8 @@ TEST(LayeredBsdf, EvalIsWhatTheGoniophotometerSees) {
         request.theta_o_deg = {25};
         request.phi_deg = {150};
         Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(2, 2);
-        for (const MeasureRow& row : measure_substrate(stack, substrate, two, request).rows) {
+        for (const MeasureRow& row : measure_substrate(stack, substrate, two, request).rows)
             expected(row.lambda_o_nm > 450, row.lambda_i_nm > 450) += row.value;
-        }
         const Vec3 wo = direction_at(std::cos(25 * M_PI / 180), 150 * M_PI / 180);
         EXPECT_LT((bsdf.eval(at_degrees(40), wo) - expected).norm(), 1e-14);
         EXPECT_EQ(bsdf.eval(at_degrees(40), kernels::vec3(0, 0.6, -0.8)).norm(), 0.0);

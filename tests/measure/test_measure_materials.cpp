@@ -214,10 +214,9 @@ TEST(MeasureMaterials, AddingRefusesConductors) {
 
 TEST(MeasureMaterials, NumbersOutOfRangeAreRefusedByEveryModel) {
     const auto refused = [](const LayerStack& stack, const SubstrateValues& substrate) {
-        for (const Model model : {Model::WeidlichWilkie, Model::Walk}) {
+        for (const Model model : {Model::WeidlichWilkie, Model::Walk})
             EXPECT_THROW(measure_substrate(stack, substrate, one, hemispherical(model, {0})),
                          Error);
-        }
     };
     refused({}, conductor(0.4, -1.0, 0.1));
     refused({}, conductor(0.0, 1.0, 0.1));
@@ -249,9 +248,8 @@ TEST(LobeQuadrature, ResolvesLobesOfAnyWidth) {
                     -std::expm1(-1.0 / (alpha * alpha)), 1e-8)
             << alpha;
     }
-    for (const double alpha : {1e-4, 0.01}) { // too narrow for any to go down
+    for (const double alpha : {1e-4, 0.01}) // too narrow for any to go down
         EXPECT_NEAR(facets_above(alpha, direction_at(cos_deg(70), 0.7)), 1.0, 1e-8) << alpha;
-    }
 }
 
 TEST(LobeQuadrature, CoversTheHemisphereOnce) {

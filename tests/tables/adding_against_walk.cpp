@@ -57,9 +57,8 @@ WalkEstimate precise_estimate(const LayerWalk& walk, const kernels::Vec3& wi,
         WalkEstimate found = estimate_walk(walk, wi, {&wo, 1}, samples, seed);
         const auto& mean = found.mean.directional[0].diffuse;
         const auto& error = found.standard_error.directional[0].diffuse;
-        if ((error.array() <= 0.003 * mean.array()).all() || samples >= (1U << 21U)) {
+        if ((error.array() <= 0.003 * mean.array()).all() || samples >= (1U << 21U))
             return found;
-        }
     }
 }
 
@@ -109,9 +108,8 @@ double adding_escape(const StackValues& stack) {
     const auto t = adding_transport(stack);
     const double n = t->lowest_ior();
     std::vector<double> breaks;
-    for (const LayerValues& layer : stack) {
+    for (const LayerValues& layer : stack)
         breaks.push_back(std::sqrt(std::fabs((layer.ior - 1.0) * (layer.ior + 1.0))));
-    }
     return integrate_pieces(breaks_between_0_and_1(breaks), 64,
                             [&](double c) { return 2.0 * c * t->transmission(c); }) /
            (n * n);
@@ -126,9 +124,8 @@ double adding_albedo(const StackValues& stack, double cosine) {
 
 LayerStack white_stack(int slabs, double ior, double alpha, Scattering scattering) {
     LayerStack stack;
-    for (int k = 0; k < slabs; ++k) {
+    for (int k = 0; k < slabs; ++k)
         stack.layers.push_back(plain_layer(k % 2 == 0 ? ior : 1.25 * ior, alpha, 0.0, scattering));
-    }
     return stack;
 }
 

@@ -57,9 +57,8 @@ std::optional<Sums> measured(const Material& material, Model model, bool hemisph
     try {
         return sums_of(measure_material(material, request_for(model, hemispherical)));
     } catch (const Error& error) {
-        if (error.kind() != Error::Kind::Input) {
+        if (error.kind() != Error::Kind::Input)
             throw;
-        }
         return std::nullopt;
     }
 }
@@ -88,9 +87,8 @@ double worst_error(const Sums& model, const Sums& walk) {
         mean[1] += sum.value;
     }
     double worst = 0.0;
-    for (const auto& [geometry, mean] : means) {
+    for (const auto& [geometry, mean] : means)
         worst = mean[1] > 0.0 ? std::max(worst, std::fabs(mean[0] / mean[1] - 1.0)) : worst;
-    }
     return worst;
 }
 
@@ -104,9 +102,8 @@ double walk_uncertainty(const Sums& walk) {
         mean[1] += sum.value;
     }
     double worst = 0.0;
-    for (const auto& [geometry, mean] : means) {
+    for (const auto& [geometry, mean] : means)
         worst = mean[1] > 0.0 ? std::max(worst, mean[0] / mean[1]) : worst;
-    }
     return worst;
 }
 
@@ -147,9 +144,8 @@ int print_preset(const std::string& name) {
 
 int main(int argc, char** argv) {
     std::vector<std::string> names(argv + 1, argv + argc);
-    if (names.empty()) {
+    if (names.empty())
         names = preset_names();
-    }
     fmt::print("Albedo: light of all wavelengths per light of one, mean over {} bands. \"All\" is "
                "the worst angle of the albedo up to 89 degrees, \"BRRDF\" the worst of 27 pairs of "
                "directions without mirror deltas.\n\n"
@@ -159,9 +155,8 @@ int main(int argc, char** argv) {
                "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
                bands.count);
     int creating = 0;
-    for (const std::string& name : names) {
+    for (const std::string& name : names)
         creating += print_preset(name);
-    }
     fmt::print("\n{} models of presets create energy\n", creating);
     return creating > 0 ? 3 : 0;
 }

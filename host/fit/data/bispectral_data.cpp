@@ -29,10 +29,9 @@ bool is_table(const std::filesystem::path& file) {
 /// True for the CSV of `measure`, by its line of headings.
 bool is_measurement_csv(const std::filesystem::path& file) {
     TextReader reader(file);
-    for (std::string_view line; reader.next_line(line);) {
+    for (std::string_view line; reader.next_line(line);)
         if (is_line_of_cells(line))
             return reader.split_cells(line)[0].text == "theta_i_deg";
-    }
     return false;
 }
 

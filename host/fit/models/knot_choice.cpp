@@ -112,12 +112,11 @@ CurveKnots choose_knots(const FitTarget& target, const FactorCurves& curves, std
     const Matrix squared = target.weight.cwiseAbs2();
     ThinnedCurve emission(curves.emission, squared * curves.excitation.cwiseAbs2());
     ThinnedCurve excitation(curves.excitation, squared.transpose() * curves.emission.cwiseAbs2());
-    while (emission.knots().size() + excitation.knots().size() > std::max<std::size_t>(count, 4)) {
+    while (emission.knots().size() + excitation.knots().size() > std::max<std::size_t>(count, 4))
         if (emission.cheapest_loss() <= excitation.cheapest_loss())
             emission.take_cheapest();
         else
             excitation.take_cheapest();
-    }
     return {emission.knots(), excitation.knots()};
 }
 

@@ -27,9 +27,8 @@ Eigen::VectorXd AngularGrid::etendue() const {
 
 std::vector<double> AngularGrid::invariants() const {
     std::vector<double> q;
-    for (const double c : edges) {
+    for (const double c : edges)
         q.push_back(ior * ior * (1.0 - c) * (1.0 + c));
-    }
     return q;
 }
 
@@ -40,18 +39,15 @@ AngularGrid make_angular_grid(double ior, double critical, int cells) {
         return s * s;
     };
     if (critical <= 0.0) {
-        for (int j = 0; j <= cells; ++j) {
+        for (int j = 0; j <= cells; ++j)
             grid.edges.push_back(share(j, cells));
-        }
         return grid;
     }
     const int lower = cells / 2, upper = cells - lower;
-    for (int j = 0; j < lower; ++j) {
+    for (int j = 0; j < lower; ++j)
         grid.edges.push_back(critical * std::sin(0.5 * std::numbers::pi * j / lower));
-    }
-    for (int j = 0; j <= upper; ++j) {
+    for (int j = 0; j <= upper; ++j)
         grid.edges.push_back(critical + (1.0 - critical) * share(j, upper));
-    }
     grid.edges.back() = 1.0;
     return grid;
 }

@@ -21,9 +21,8 @@ Quadrature end_gathered_rule() {
         gathered.weights.push_back(rule.weights[i] * std::sin(2.0 * u));
         total += gathered.weights.back();
     }
-    for (double& weight : gathered.weights) {
+    for (double& weight : gathered.weights)
         weight /= total;
-    }
     return gathered;
 }
 
@@ -34,9 +33,8 @@ void integrate_invariant(std::vector<double> edges, const Visit& visit) {
     std::sort(edges.begin(), edges.end());
     for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
         const double width = edges[k + 1] - edges[k];
-        for (std::size_t i = 0; width > 1e-15 && i < rule.nodes.size(); ++i) {
+        for (std::size_t i = 0; width > 1e-15 && i < rule.nodes.size(); ++i)
             visit(edges[k] + width * rule.nodes[i], rule.weights[i] * width);
-        }
     }
 }
 
@@ -44,9 +42,8 @@ void integrate_invariant(std::vector<double> edges, const Visit& visit) {
 std::vector<double> all_edges(const SmoothStack& media, std::vector<double> edges,
                               const std::vector<double>& more, double limit) {
     edges.insert(edges.end(), more.begin(), more.end());
-    for (const double n : media.ior) {
+    for (const double n : media.ior)
         edges.push_back(n * n);
-    }
     edges.push_back(0.0);
     edges.push_back(limit);
     std::erase_if(edges, [&](double q) { return q > limit || q < 0.0; });
@@ -77,12 +74,10 @@ CellPile pile_between(const SmoothStack& media, const AngularGrid& upper,
                         [&](double q, double w) {
                             const int u = cell_at(upper, q), l = cell_at(lower, q);
                             const SmoothResponse response = response_at(media, q);
-                            if (u >= 0) {
+                            if (u >= 0)
                                 pile.back_down(u) += w * response.reflection_down / upper_e(u);
-                            }
-                            if (l >= 0) {
+                            if (l >= 0)
                                 pile.back_up(l) += w * response.reflection_up() / lower_e(l);
-                            }
                             if (u >= 0 && l >= 0) {
                                 pile.down(l, u) += w * response.transmission / upper_e(u);
                                 pile.up(u, l) += w * response.transmission / lower_e(l);
@@ -97,9 +92,8 @@ AirPile air_pile(const SmoothStack& media, const AngularGrid& grid) {
     integrate_invariant(all_edges(media, grid.invariants(), {}, grid.ior * grid.ior),
                         [&](double q, double w) {
                             const int cell = cell_at(grid, q);
-                            if (cell < 0) {
+                            if (cell < 0)
                                 return;
-                            }
                             const SmoothResponse response = response_at(media, q);
                             pile.through(cell) += w * response.transmission / e(cell);
                             pile.back(cell) += w * response.reflection_up() / e(cell);

@@ -70,17 +70,15 @@ void AngularSystem::add_interface(const StackValues& stack, std::size_t index) {
     }
     rough.upper.ior = above;
     rough.lower.ior = layer.ior;
-    if (scatterers_.empty() && denser) {
+    if (scatterers_.empty() && denser)
         first_lobe_ = op->first_lobe;
-    }
     scatterers_.push_back(std::move(rough));
 }
 
 Eigen::Index AngularSystem::size() const {
     Eigen::Index n = 0;
-    for (const Scatterer& scatterer : scatterers_) {
+    for (const Scatterer& scatterer : scatterers_)
         n += scatterer.response.rows();
-    }
     return n;
 }
 

@@ -21,9 +21,8 @@ std::shared_ptr<const CellFit> fit_of(const AngularGrid& grid) {
     static std::map<double, std::shared_ptr<const CellFit>> known;
     const std::scoped_lock lock(mutex);
     auto& fit = known[grid.critical];
-    if (!fit) {
+    if (!fit)
         fit = std::make_shared<CellFit>(grid);
-    }
     return fit;
 }
 
@@ -50,9 +49,8 @@ public:
 
     double operator()(double c) const {
         const double rest = fit_->evaluate(scattered_, c);
-        if (depth_ == 0.0) {
+        if (depth_ == 0.0)
             return rest;
-        }
         const double lost = c > 0.0 ? -std::expm1(-depth_ / c) : 1.0;
         const double passed = fit_->evaluate(passed_, c);
         return passed + lost * (rest - passed);
@@ -80,9 +78,8 @@ public:
           fit_(fit_of(system_.top_grid())) {
         top_ = system_.top();
         top_rough_ = top_.ior.size() == 1;
-        while (first_rough_ < stack.size() && !is_rough_interface(stack, first_rough_)) {
+        while (first_rough_ < stack.size() && !is_rough_interface(stack, first_rough_))
             ++first_rough_;
-        }
         lobe_top_ = smooth_media(unscattered_, 0, first_rough_);
         const AngularResponse response = system_.solve();
         const auto fitted = [&](Eigen::VectorXd AngularShares::*share) {
@@ -121,9 +118,8 @@ public:
     }
     double residual(double c) const override {
         double rest = specular_albedo(c) - specular_delta(c) - top_lobe_albedo(c);
-        for (const LobeTables& table : tables_) {
+        for (const LobeTables& table : tables_)
             rest -= table.albedo(c);
-        }
         return std::max(rest, 0.0);
     }
     double residual_average() const override { return residual_average_; }
@@ -139,9 +135,8 @@ private:
     Shares shares(double cosine) const {
         const double c = std::clamp(cosine, 0.0, 1.0);
         const SmoothResponse in = smooth_response(top_, 1.0, c);
-        if (in.transmission <= 0.0) {
+        if (in.transmission <= 0.0)
             return {0.0, in.reflection_down, 0.0};
-        }
         const double inside = inner_cosine(top_, c);
         const double raw = std::clamp(substrate_(inside), 0.0, 1.0);
         const double to_substrate = reciprocity_ * raw;
@@ -164,9 +159,8 @@ private:
     /// the flux that the substrate sends out: an albedo of 1 stays 1 to rounding.
     void make_reciprocal(double escape) {
         std::vector<double> inner;
-        for (const double n : top_.ior) {
+        for (const double n : top_.ior)
             inner.push_back(std::sqrt(std::fabs((n - 1.0) * (n + 1.0))));
-        }
         const AngularGrid& grid = system_.top_grid();
         if (grid.critical > 0.0) {
             const double n = top_.ior.back();
@@ -177,9 +171,8 @@ private:
         const double integral = integrate_pieces(
             breaks_, 64, [this](double c) { return 2.0 * c * shares(c).transmission; });
         const double n = stack_.back().ior;
-        if (integral > 0.0) {
+        if (integral > 0.0)
             reciprocity_ = n * n * escape / integral;
-        }
     }
 
     double top_lobe_albedo(double c) const {
@@ -189,9 +182,8 @@ private:
     /// First reflection lobe at the top, then one lobe for each deeper rough interface and for
     /// each run of smooth interfaces beneath a rough one. They hold light that no slab scattered.
     void make_lobes() {
-        if (first_rough_ == stack_.size()) {
+        if (first_rough_ == stack_.size())
             return;
-        }
         const auto cut_system = [&](std::size_t count) { // black beneath `count` layers
             return AngularSystem(unscattered_, count);
         };
@@ -207,17 +199,14 @@ private:
         if (top_rough_) {
             set_top_lobe();
             ++k;
-            if (k < stack_.size()) {
+            if (k < stack_.size())
                 above = cut_albedo(k);
-            }
         }
         while (k < stack_.size()) {
             const std::size_t first = k++;
-            if (!is_rough_interface(stack_, first)) {
-                while (k < stack_.size() && !is_rough_interface(stack_, k)) {
+            if (!is_rough_interface(stack_, first))
+                while (k < stack_.size() && !is_rough_interface(stack_, k))
                     ++k;
-                }
-            }
             const Eigen::VectorXd cut = cut_albedo(k);
             add_lobe(first, cut - above);
             above = cut;
@@ -225,11 +214,10 @@ private:
     }
 
     void set_top_lobe() {
-        if (system_.first_lobe().size() > 0) {
+        if (system_.first_lobe().size() > 0)
             top_lobe_ = fit_->coefficients(system_.first_lobe());
-        } else {
+        else
             top_lobe_ = fit_->coefficients(inverted_first_lobe());
-        }
     }
 
     /// Albedo of the top lobe towards a thinner medium, by quadrature over facets.
@@ -261,9 +249,8 @@ private:
 
     void add_lobe(std::size_t index, const Eigen::VectorXd& coefficients) {
         std::size_t shape = index; // a smooth interface takes the shape of the rough one above it
-        while (shape > 0 && stack_[shape].alpha == 0.0) {
+        while (shape > 0 && stack_[shape].alpha == 0.0)
             --shape;
-        }
         const Lobe lobe{stack_[shape].distribution, effective_lobe_width(stack_, index)};
         lobes_.push_back(lobe);
         tables_.push_back(fit_lobe(lobe, [&](double c) {

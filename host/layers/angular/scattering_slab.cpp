@@ -24,9 +24,8 @@ struct CellPhase {
 
 /// Terms of the Legendre series: until g^l is nothing, and at most what |g| = 0.999 needs.
 int legendre_terms(double g) {
-    if (g == 0.0) {
+    if (g == 0.0)
         return 1;
-    }
     return static_cast<int>(
                std::clamp(std::ceil(std::log(1e-13) / std::log(std::fabs(g))), 1.0, 30000.0)) +
            1;
@@ -64,13 +63,11 @@ std::shared_ptr<const CellPhase> phase_of(const AngularGrid& grid, double g) {
     static std::map<std::tuple<std::vector<double>, double>, std::shared_ptr<const CellPhase>>
         known;
     const std::scoped_lock lock(mutex);
-    if (known.size() > 64) {
+    if (known.size() > 64)
         known.clear();
-    }
     auto& phase = known[{grid.edges, g}];
-    if (!phase) {
+    if (!phase)
         phase = std::make_shared<CellPhase>(integrate_phase(grid, g));
-    }
     return phase;
 }
 

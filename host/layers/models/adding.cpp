@@ -19,19 +19,16 @@ class RecentTransports {
 public:
     std::shared_ptr<const AddingTransport> find(const StackValues& stack) {
         const std::scoped_lock lock(mutex_);
-        for (const auto& [known, transport] : recent_) {
-            if (known == stack) {
+        for (const auto& [known, transport] : recent_)
+            if (known == stack)
                 return transport;
-            }
-        }
         return nullptr;
     }
     void remember(const StackValues& stack, std::shared_ptr<const AddingTransport> transport) {
         const std::scoped_lock lock(mutex_);
         recent_.emplace_front(stack, std::move(transport));
-        if (recent_.size() > 64) {
+        if (recent_.size() > 64)
             recent_.pop_back();
-        }
     }
 
 private:
@@ -50,12 +47,10 @@ bool has_rough_film(const StackValues& stack, std::size_t index) {
 
 std::optional<std::string> adding_refusal(const LayerStack& stack) {
     for (const Layer& layer : stack.layers) {
-        if (layer.flakes && layer.flakes->coverage > 0.0) {
+        if (layer.flakes && layer.flakes->coverage > 0.0)
             return flakes_reason;
-        }
-        if (layer.film && layer.film->thickness_nm > 0.0 && layer.alpha > 0.0) {
+        if (layer.film && layer.film->thickness_nm > 0.0 && layer.alpha > 0.0)
             return film_reason;
-        }
     }
     return std::nullopt;
 }
@@ -70,13 +65,11 @@ std::shared_ptr<const AddingTransport> adding_transport(const StackValues& stack
         }
         scatters = scatters || is_rough_interface(stack, k) || stack[k].tau_scattering > 0.0;
     }
-    if (!scatters) {
+    if (!scatters)
         return smooth_transport(stack);
-    }
     static RecentTransports recent;
-    if (auto known = recent.find(stack)) {
+    if (auto known = recent.find(stack))
         return known;
-    }
     auto transport = angular_transport(stack);
     recent.remember(stack, transport);
     return transport;

@@ -23,12 +23,10 @@ namespace {
 double feedback_radius(const Eigen::MatrixXd& feedback) {
     const Eigen::MatrixXd size = feedback.cwiseAbs();
     const double bound = std::min(size.colwise().sum().maxCoeff(), size.rowwise().sum().maxCoeff());
-    if (bound < 1.0) {
+    if (bound < 1.0)
         return bound;
-    }
-    if (feedback.isUpperTriangular(0.0) || feedback.isLowerTriangular(0.0)) {
+    if (feedback.isUpperTriangular(0.0) || feedback.isLowerTriangular(0.0))
         return size.diagonal().maxCoeff();
-    }
     return Eigen::EigenSolver<Eigen::MatrixXd>(feedback, false).eigenvalues().cwiseAbs().maxCoeff();
 }
 
@@ -42,15 +40,13 @@ Eigen::MatrixXd effective_matrix(const Eigen::MatrixXd& per_band, const Eigen::V
             fmt::format("a {} x {} matrix does not go with {} bands", n, per_band.cols(), r.size()),
             "emission and excitation must share one grid");
     }
-    if (n == 0) {
+    if (n == 0)
         return per_band;
-    }
     const Eigen::MatrixXd feedback = r.asDiagonal() * per_band;
     const double radius = feedback_radius(feedback);
     // eigenvalues come with rounding of a few parts in 1e16; 1e-12 from the pole is not a result
-    if (!(radius < 1.0 - 1e-12)) {
+    if (!(radius < 1.0 - 1e-12))
         throw_diverges(radius);
-    }
     const Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n, n) - feedback;
     return system.transpose().partialPivLu().solve(per_band.transpose()).transpose();
 }
@@ -79,9 +75,8 @@ SemiseparableMatrix effective_semiseparable(const SemiseparableMatrix& matrix,
     Eigen::MatrixXd inverse = product;
     for (Eigen::Index o = 0; o < n; ++o) {
         const double feedback = r(o) * matrix.diagonal(o);
-        if (!(feedback < 1.0)) {
+        if (!(feedback < 1.0))
             throw_diverges(feedback);
-        }
         const double gain = 1.0 / (1.0 - feedback);
         const Eigen::RowVectorXd e = matrix.emission.row(o);
         const Eigen::VectorXd x = matrix.excitation.row(o).transpose();

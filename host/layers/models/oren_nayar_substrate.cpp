@@ -50,11 +50,10 @@ OrenNayarWeights oren_nayar_hemispherical(double sigma, double lowest_ior, doubl
             double mean = 0.0;
             for (std::size_t k = 0; k < azimuths.nodes.size(); ++k) {
                 const double phi = 0.5 * std::numbers::pi * azimuths.nodes[k];
-                for (const double azimuth : {phi, std::numbers::pi - phi}) {
+                for (const double azimuth : {phi, std::numbers::pi - phi})
                     mean +=
                         0.5 * azimuths.weights[k] *
                         (oren_nayar_weights(sigma, lowest_ior, wi, direction(c, azimuth)).*part);
-                }
             }
             return flux * mean;
         });
@@ -66,9 +65,8 @@ OrenNayarWeights oren_nayar_hemispherical(double sigma, double lowest_ior, doubl
 
 double oren_nayar_feedback(double sigma, double diffuse,
                            const std::function<double(const SubstrateWeight&)>& integrate) {
-    if (sigma == 0.0) {
+    if (sigma == 0.0)
         return diffuse;
-    }
     const double mean = kernels::oren_nayar_mean_albedo(sigma);
     return integrate([&](double c) { return kernels::oren_nayar_albedo(sigma, c) / mean; });
 }

@@ -54,9 +54,8 @@ void cross_interface(const LayerValues& layer, Descent& d) {
     d.wi = refract_macroscopic(d.wi, layer.ior / d.ior);
     d.wo = refract_macroscopic(d.wo, layer.ior / d.ior);
     d.ior = layer.ior;
-    if (!d.passes()) {
+    if (!d.passes())
         d.in = d.out = 0.0;
-    }
 }
 
 /// Calls visit(layer, part, descent) with the directions just above each part from the air down,
@@ -64,18 +63,15 @@ void cross_interface(const LayerValues& layer, Descent& d) {
 template <typename Visit>
 Descent descend(const StackValues& stack, const Vec3& wi, const Vec3& wo, const Visit& visit) {
     Descent d{wi, wo};
-    if (!d.passes()) {
+    if (!d.passes())
         d.in = d.out = 0.0;
-    }
     for (const LayerValues& layer : stack) {
-        if (!d.passes()) {
+        if (!d.passes())
             return d;
-        }
         visit(layer, Part::Interface, d);
         cross_interface(layer, d);
-        if (!d.passes()) {
+        if (!d.passes())
             return d;
-        }
         visit(layer, Part::Slab, d);
         const double tau = layer.tau + layer.tau_scattering;
         d.in *= passage(tau, d.wi.z);
@@ -96,9 +92,8 @@ Descent arrive(const StackValues& stack, const Vec3& wi, const Vec3& wo) {
 /// F D G / (4 ci co) of an interface or a conductor; 0 where it is smooth.
 template <typename Reflector>
 double facet_lobe(const Reflector& reflector, const Descent& d) {
-    if (!(reflector.alpha > 0.0)) {
+    if (!(reflector.alpha > 0.0))
         return 0.0;
-    }
     const Vec3 h = kernels::vec3_normalise(kernels::vec3_add(d.wi, d.wo));
     return facet_reflectance(reflector, d.ior, kernels::vec3_dot(d.wi, h)) *
            kernels::microfacet_reflection(kernel_distribution(reflector.distribution),
@@ -112,9 +107,8 @@ double mirror(const Reflector& reflector, const Descent& d) {
 
 /// Light that comes along -wi, is scattered once and leaves along wo.
 double slab_lobe(const LayerValues& layer, const Descent& d) {
-    if (!(layer.tau_scattering > 0.0)) {
+    if (!(layer.tau_scattering > 0.0))
         return 0.0;
-    }
     const double tau = layer.tau + layer.tau_scattering;
     const double phase =
         kernels::layer_stack_phase(layer.anisotropy, -kernels::vec3_dot(d.wi, d.wo));
@@ -183,9 +177,8 @@ double WeidlichWilkie::way_out(const StackValues& stack, const Vec3& wi, const V
 
 double WeidlichWilkie::diffuse_shape(const StackValues& stack, double sigma, const Vec3& wi,
                                      const Vec3& wo) {
-    if (sigma == 0.0) {
+    if (sigma == 0.0)
         return 1.0;
-    }
     const Descent d = arrive(stack, wi, wo);
     return std::numbers::pi * kernels::oren_nayar_value(sigma, d.wi, d.wo);
 }

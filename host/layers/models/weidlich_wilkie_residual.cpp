@@ -34,29 +34,25 @@ double mean_of(const CosineTable& table) {
 /// V m e of a part with share `own` under all of `above`.
 CosineTable seen_from_air(const StackValues& above, const CosineTable& own) {
     const double mean = mean_of(own);
-    if (!(mean > 0.0)) {
+    if (!(mean > 0.0))
         return {};
-    }
     std::vector<double> seen;
     for (int node = 0; node < CosineTable::nodes; ++node) {
         Way way{CosineTable::node_cosine(node)};
-        for (const LayerValues& layer : above) {
+        for (const LayerValues& layer : above)
             way.cross(layer);
-        }
         seen.push_back(way.through > 0.0 ? way.through * own(way.cosine) : 0.0);
     }
     const double share = std::min(mean_of(CosineTable(seen)) / mean, 1.0);
-    for (double& value : seen) {
+    for (double& value : seen)
         value *= share;
-    }
     return CosineTable(std::move(seen));
 }
 
 void add(CosineTable& sum, const CosineTable& part, double factor) {
     std::vector<double> values = sum.values();
-    for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t i = 0; i < values.size(); ++i)
         values[i] += factor * part.values()[i];
-    }
     sum = CosineTable(std::move(values));
 }
 

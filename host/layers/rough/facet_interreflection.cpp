@@ -27,18 +27,16 @@ std::vector<double> cavity_interreflection(const CosineTable& albedo, double ref
     const double mean = cosine_mean(albedo);
     const double scale = reflectance * reflectance * mean / (1.0 - reflectance * (1.0 - mean));
     std::vector<double> values;
-    for (const double e : albedo.values()) {
+    for (const double e : albedo.values())
         values.push_back(scale * std::max(1.0 - e, 0.0));
-    }
     return values;
 }
 
 /// Every meeting at the mean reflectance.
 std::vector<double> smith_interreflection(const Eigen::MatrixXd& orders, double reflectance) {
     Eigen::VectorXd powers(orders.cols());
-    for (Eigen::Index k = 0; k < powers.size(); ++k) {
+    for (Eigen::Index k = 0; k < powers.size(); ++k)
         powers(k) = std::pow(reflectance, static_cast<double>(k + 2));
-    }
     const Eigen::VectorXd values = orders * powers;
     return {values.data(), values.data() + values.size()};
 }
@@ -102,25 +100,21 @@ CosineTable known_interreflection(const RoughInterface& interface, bool from_bel
     const Key key{interface.eta, interface.distribution, interface.alpha, from_below};
     const std::scoped_lock lock(mutex);
     const auto found = known.find(key);
-    if (found != known.end()) {
+    if (found != known.end())
         return found->second;
-    }
     return known.emplace(key, dielectric_interreflection(interface, from_below)).first->second;
 }
 
 } // namespace
 
 CosineTable facet_interreflection(const LayerValues& layer, double ior_above) {
-    if (!(layer.alpha > 0.0) || layer.scattering == Scattering::Single) {
+    if (!(layer.alpha > 0.0) || layer.scattering == Scattering::Single)
         return {};
-    }
-    if (layer.film.thickness_nm > 0.0) {
+    if (layer.film.thickness_nm > 0.0)
         return opaque_interreflection(layer, ior_above);
-    }
     const StackValues pair{{ior_above}, layer};
-    if (!is_rough_interface(pair, 1)) {
+    if (!is_rough_interface(pair, 1))
         return {};
-    }
     const double eta = layer.ior / ior_above;
     // operators are rounded to 1e-4 of the ratio: so are these
     const double ratio = std::round(std::max(eta, 1.0 / eta) * 1e4) * 1e-4;
@@ -129,9 +123,8 @@ CosineTable facet_interreflection(const LayerValues& layer, double ior_above) {
 }
 
 CosineTable facet_interreflection(const ConductorValues& conductor, double ior_above) {
-    if (!(conductor.alpha > 0.0) || conductor.scattering == Scattering::Single) {
+    if (!(conductor.alpha > 0.0) || conductor.scattering == Scattering::Single)
         return {};
-    }
     return opaque_interreflection(conductor, ior_above);
 }
 

@@ -34,9 +34,8 @@ void add_walk(int distribution, double alpha, const Vec3& wi, WalkNumbers number
         const Vec3 out =
             kernels::vec3_sub(kernels::vec3_scale(h, 2.0 * kernels::vec3_dot(v, h)), v);
         const double leaves = weight * microsurface::escape(distribution, alpha, out, height);
-        if (meeting > 1) {
+        if (meeting > 1)
             shares(meeting - 2) += leaves;
-        }
         weight -= leaves;
         height = microsurface::next_height(distribution, alpha, out, height, numbers.next());
         v = microsurface::negated(out);
@@ -70,9 +69,8 @@ std::shared_ptr<const Eigen::MatrixXd> facet_orders(const AddingTransport::Lobe&
     static std::map<std::pair<Distribution, double>, std::shared_ptr<const Eigen::MatrixXd>> known;
     const std::scoped_lock lock(mutex);
     auto& shares = known[{lobe.distribution, lobe.alpha}];
-    if (!shares) {
+    if (!shares)
         shares = std::make_shared<Eigen::MatrixXd>(walked_orders(lobe));
-    }
     return shares;
 }
 

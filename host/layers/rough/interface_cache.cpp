@@ -33,9 +33,8 @@ void keep(const InterfaceOperator& op, const std::filesystem::path& file, long e
 std::shared_ptr<const InterfaceOperator> exact_operator(RoughInterface interface, long eta_1e4) {
     interface.eta = static_cast<double>(eta_1e4) * 1e-4;
     const std::filesystem::path file = interface_file(interface, eta_1e4);
-    if (std::optional<InterfaceOperator> stored = read_interface_file(file, interface, eta_1e4)) {
+    if (std::optional<InterfaceOperator> stored = read_interface_file(file, interface, eta_1e4))
         return std::make_shared<InterfaceOperator>(std::move(*stored));
-    }
     auto op = std::make_shared<InterfaceOperator>(compute_interface_operator(interface));
     keep(*op, file, eta_1e4);
     return op;
@@ -55,14 +54,12 @@ private:
 
     std::shared_ptr<const InterfaceOperator> find(const RoughInterface& interface, long eta_1e4) {
         const OperatorKey key = key_of(interface, eta_1e4);
-        if (const auto known = operators_.find(key); known != operators_.end()) {
+        if (const auto known = operators_.find(key); known != operators_.end())
             return known->second;
-        }
         const bool direct = eta_1e4 % 100 == 0 || eta_1e4 < 10200;
         auto op = direct ? exact_operator(interface, eta_1e4) : interpolate(interface, eta_1e4);
-        if (operators_.size() >= capacity) {
+        if (operators_.size() >= capacity)
             operators_.clear();
-        }
         operators_[key] = op;
         return op;
     }
@@ -90,9 +87,8 @@ private:
             op->first_lobe += weight * known->first_lobe;
         }
         op->exchange = op->exchange.cwiseMax(0.0);
-        if (interface.scattering == Scattering::Multiple) {
+        if (interface.scattering == Scattering::Multiple)
             scale_symmetric(op->exchange, op->etendue());
-        }
         return op;
     }
 

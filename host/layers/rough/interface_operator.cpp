@@ -68,9 +68,8 @@ void scale_to_marginals(Eigen::MatrixXd& matrix, const Eigen::VectorXd& rows,
         matrix = (ratio(rows, matrix.rowwise().sum()).asDiagonal() * matrix).eval();
         const Eigen::VectorXd change = ratio(columns, matrix.colwise().sum().transpose());
         matrix = (matrix * change.asDiagonal()).eval();
-        if ((change.array() - 1.0).abs().maxCoeff() < 1e-10) {
+        if ((change.array() - 1.0).abs().maxCoeff() < 1e-10)
             break;
-        }
     }
 }
 
@@ -102,9 +101,8 @@ void restore_splits(InterfaceOperator& op, const Eigen::VectorXd& reflected,
 void add_lost_flux(Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
     const Eigen::VectorXd lost = (target - matrix.colwise().sum().transpose()).cwiseMax(0.0);
     const double total = lost.sum();
-    if (total > 0.0) {
+    if (total > 0.0)
         matrix += lost * lost.transpose() / total;
-    }
 }
 
 } // namespace
@@ -122,9 +120,8 @@ void scale_symmetric(Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
         const Eigen::VectorXd ratio =
             (sums.array() > 0.0).select(target.array() / sums.array().max(1e-300), 1.0);
         d = d.cwiseProduct(ratio.cwiseSqrt());
-        if ((ratio.array() - 1.0).abs().maxCoeff() < 1e-14) {
+        if ((ratio.array() - 1.0).abs().maxCoeff() < 1e-14)
             break;
-        }
     }
     const Eigen::MatrixXd scaled = d.asDiagonal() * matrix * d.asDiagonal();
     matrix = 0.5 * (scaled + scaled.transpose()); // the two products round differently
@@ -166,9 +163,8 @@ InterfaceOperator compute_interface_operator(const RoughInterface& interface) {
     symmetrise(op.exchange, e);
     restore_splits(op, reflected, transmitted);
     if (interface.scattering == Scattering::Multiple) {
-        if (interface.distribution == Distribution::Blinn) {
+        if (interface.distribution == Distribution::Blinn)
             add_lost_flux(op.exchange, e);
-        }
         scale_symmetric(op.exchange, e);
     }
     return op;

@@ -51,9 +51,8 @@ double scatter_once(const RoughInterface& interface, double eta, const Vec3& wi,
     const double u1 = numbers.next(), u2 = numbers.next();
     const Vec3 h = kernels::microfacet_sample(distribution, interface.alpha, wi, u1, u2);
     const double cos_i = kernels::vec3_dot(wi, h);
-    if (cos_i <= 0.0) {
+    if (cos_i <= 0.0)
         return 0.0;
-    }
     const Facet facet = facet_response(wi, h, eta);
     const bool blinn = interface.distribution == Distribution::Blinn;
     const double lambda_i = blinn ? 0.0 : microsurface::lambda(distribution, interface.alpha, wi);
@@ -121,12 +120,10 @@ private:
         const double r = facet.reflectance, t = 1.0 - r;
         const double r_out = r > 0.0 ? escape(facet.reflected, height_) : 0.0;
         const double t_out = t > 0.0 ? escape(facet.refracted, below) : 0.0;
-        if (r * r_out > 0.0) {
+        if (r * r_out > 0.0)
             departures.push_back({same_side_, facet.reflected.z, weight_ * r * r_out});
-        }
-        if (t * t_out > 0.0) {
+        if (t * t_out > 0.0)
             departures.push_back({!same_side_, facet.refracted.z, weight_ * t * t_out});
-        }
         const double r_stays = r * (1.0 - r_out), t_stays = t * (1.0 - t_out);
         const double choice = numbers.next(), step = numbers.next();
         const double stays = r_stays + t_stays;
@@ -146,12 +143,10 @@ private:
     /// Russian roulette below a weight of 1/100.
     bool survives(WalkNumbers& numbers) {
         constexpr double floor = 0.01;
-        if (weight_ >= floor) {
+        if (weight_ >= floor)
             return true;
-        }
-        if (numbers.next() * floor >= weight_) {
+        if (numbers.next() * floor >= weight_)
             return false;
-        }
         weight_ = floor;
         return true;
     }
@@ -190,9 +185,8 @@ WalkStream::WalkStream(const LatticeRule& rule, unsigned stream_seed) : seed(str
 
 double WalkNumbers::next() {
     const unsigned d = dimension_++;
-    if (d >= WalkStream::dimensions) {
+    if (d >= WalkStream::dimensions)
         return hashed_uniform(walk_, stream_.seed, d);
-    }
     const double x = walk_ * stream_.generator[d] + stream_.shift[d];
     return x - static_cast<double>(static_cast<unsigned>(x));
 }
@@ -201,10 +195,8 @@ double scatter_at_interface(const RoughInterface& interface, bool from_below, do
                             WalkNumbers& numbers, std::vector<Departure>& departures) {
     const double eta = from_below ? 1.0 / interface.eta : interface.eta;
     const Vec3 wi = kernels::vec3(std::sqrt((1.0 - cosine) * (1.0 + cosine)), 0.0, cosine);
-    if (interface.scattering == Scattering::Single ||
-        interface.distribution == Distribution::Blinn) {
+    if (interface.scattering == Scattering::Single || interface.distribution == Distribution::Blinn)
         return scatter_once(interface, eta, wi, numbers, departures);
-    }
     return SurfaceWalk(interface, eta).run(wi, numbers, departures);
 }
 

@@ -23,9 +23,8 @@ double reflected_once(double alpha, const Vec3& wi, double u1, double u2) {
     const Vec3 h = kernels::microfacet_sample(MICROFACET_BLINN, alpha, wi, u1, u2);
     const double cos_h = kernels::vec3_dot(wi, h);
     const Vec3 wo = kernels::vec3_sub(kernels::vec3_scale(h, 2.0 * cos_h), wi);
-    if (cos_h <= 0.0 || wo.z <= 0.0) {
+    if (cos_h <= 0.0 || wo.z <= 0.0)
         return 0.0;
-    }
     return kernels::microfacet_g2(MICROFACET_BLINN, alpha, wi, wo, h) * cos_h / (wi.z * h.z);
 }
 
@@ -47,9 +46,8 @@ double kept_in_cell(double eta, double alpha, bool from_below, double low, doubl
         departures.clear();
         scatter_at_interface({eta, Distribution::Blinn, alpha, Scattering::Single}, from_below, c,
                              numbers, departures);
-        for (const Departure& departure : departures) {
+        for (const Departure& departure : departures)
             kept += departure.share;
-        }
     }
     return kept / cell_rule.count;
 }
@@ -61,9 +59,8 @@ LostFlux::LostFlux(double eta, double alpha) {
     double total = 0.0;
     for (const AngularGrid& grid : {op.above, op.below}) {
         const bool below = !sides_.empty();
-        if (below && eta == 0.0) {
+        if (below && eta == 0.0)
             break;
-        }
         Cells& side = sides_.emplace_back(Cells{grid.ior, grid.edges, {}});
         const Eigen::VectorXd etendue = grid.etendue();
         for (int cell = 0; cell < grid.cells(); ++cell) {
@@ -112,9 +109,8 @@ std::shared_ptr<const LostFlux> LostFlux::of(double eta, double alpha) {
     static std::map<std::pair<double, double>, std::shared_ptr<const LostFlux>> known;
     const std::scoped_lock lock(mutex);
     auto& flux = known[{eta, alpha}];
-    if (!flux) {
+    if (!flux)
         flux.reset(new LostFlux(eta, alpha));
-    }
     return flux;
 }
 

@@ -62,9 +62,8 @@ Eigen::MatrixXd spread_matrix(const AddingTransport::Lobe& lobe) {
             const Vec3 h = kernels::microfacet_sample(distribution, lobe.alpha, wi, u1, u2);
             const double cos_h = kernels::vec3_dot(wi, h);
             const Vec3 wo = kernels::vec3_sub(kernels::vec3_scale(h, 2.0 * cos_h), wi);
-            if (cos_h <= 0.0 || wo.z <= 0.0) {
+            if (cos_h <= 0.0 || wo.z <= 0.0)
                 continue;
-            }
             const double share = lobe_share(distribution, lobe.alpha, wi, wo, h) / lobe_rule.count;
             const double x = std::sqrt(std::min(wo.z, 1.0)) * (CosineTable::nodes - 1);
             const int left = std::min(static_cast<int>(x), CosineTable::nodes - 2);
@@ -81,9 +80,8 @@ std::shared_ptr<const Eigen::MatrixXd> spread_of(const AddingTransport::Lobe& lo
     const std::pair<int, double> key{static_cast<int>(lobe.distribution), lobe.alpha};
     const std::scoped_lock lock(mutex);
     auto& spread = known[key];
-    if (!spread) {
+    if (!spread)
         spread = std::make_shared<Eigen::MatrixXd>(spread_matrix(lobe));
-    }
     return spread;
 }
 
@@ -115,9 +113,8 @@ LobeTables fit_lobe(const AddingTransport::Lobe& lobe,
         }
     }
     const Eigen::VectorXd reached = a.cwiseProduct(*spread * a);
-    for (Eigen::Index i = 0; i < a.size(); ++i) {
+    for (Eigen::Index i = 0; i < a.size(); ++i)
         a(i) *= reached(i) > target(i) ? target(i) / reached(i) : 1.0;
-    }
     const Eigen::VectorXd albedo = a.cwiseProduct(*spread * a);
     return {CosineTable(as_vector(a)), CosineTable(as_vector(albedo))};
 }

@@ -8,12 +8,10 @@
 namespace reradiant {
 
 FresnelPair fresnel_pair(double n_above, double n_below, double g2_above, double g2_below) {
-    if (n_above == n_below) {
+    if (n_above == n_below)
         return {1.0, 0.0};
-    }
-    if (g2_above <= 0.0 || g2_below <= 0.0) {
+    if (g2_above <= 0.0 || g2_below <= 0.0)
         return {0.0, 1.0};
-    }
     const double a = std::sqrt(g2_above), b = std::sqrt(g2_below);
     const double u2 = n_above * n_above, l2 = n_below * n_below;
     const double excess = (n_below - n_above) * (n_below + n_above);
@@ -52,12 +50,10 @@ FresnelPair interface_pair(const SmoothStack& stack, std::size_t k, double g2_ab
                            double g2_below) {
     const double n_above = stack.ior[k], n_below = stack.ior[k + 1];
     const bool filmed = k < stack.film.size() && stack.film[k].thickness_nm > 0.0;
-    if (!filmed) {
+    if (!filmed)
         return fresnel_pair(n_above, n_below, g2_above, g2_below);
-    }
-    if (g2_above <= 0.0 || g2_below <= 0.0) {
+    if (g2_above <= 0.0 || g2_below <= 0.0)
         return {0.0, 1.0};
-    }
     const double cosine = std::min(std::sqrt(g2_above) / n_above, 1.0);
     const double r =
         kernels::thin_film_reflectance(cosine, n_above, stack.film[k].ior, n_below, 0.0,
@@ -67,9 +63,8 @@ FresnelPair interface_pair(const SmoothStack& stack, std::size_t k, double g2_ab
 
 /// Optical depth along the path; infinite where the path is evanescent in an absorber.
 double slant_depth(double tau, double ior, double g2) {
-    if (tau == 0.0) {
+    if (tau == 0.0)
         return 0.0;
-    }
     return g2 > 0.0 ? tau * ior / std::sqrt(g2) : HUGE_VAL;
 }
 
@@ -95,9 +90,8 @@ SmoothResponse smooth_response_g2(const SmoothStack& stack, double reference_ior
         const double w = response.loss_up - (1.0 - response.loss_up) * std::expm1(-2.0 * depth);
         response.transmission *= t;
         response.loss_up = w;
-        if (k + 1 == stack.ior.size()) {
+        if (k + 1 == stack.ior.size())
             break;
-        }
         const double below = g2_of(k + 1);
         const FresnelPair f = interface_pair(stack, k, g2, below);
         // 1 - rf R' with R' = 1 - w, as a sum of positive terms

@@ -53,9 +53,8 @@ private:
     double integrate_over_lowest(const Function& function) const {
         const double n = stack_.ior.back();
         std::vector<double> inner;
-        for (const double above : stack_.ior) {
+        for (const double above : stack_.ior)
             inner.push_back(std::sqrt(std::fabs((n - above) * (n + above))) / n);
-        }
         return integrate_pieces(breaks_between_0_and_1(inner), integration_nodes, [&](double c) {
             return 2.0 * c * function(smooth_response(stack_, n, c).loss_up, c);
         });

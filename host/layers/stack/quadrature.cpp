@@ -22,9 +22,8 @@ static Quadrature make_gauss_legendre(int count) {
             slope = count * (x * p1 - p0) / (x * x - 1.0);
             const double change = p1 / slope;
             x -= change;
-            if (std::fabs(change) < 1e-15) {
+            if (std::fabs(change) < 1e-15)
                 break;
-            }
         }
         rule.nodes.push_back(0.5 * (1.0 - x));
         rule.weights.push_back(1.0 / ((1.0 - x * x) * slope * slope));
@@ -37,9 +36,8 @@ const Quadrature& gauss_legendre(int count) {
     static std::map<int, std::unique_ptr<Quadrature>> rules;
     const std::scoped_lock lock(mutex);
     std::unique_ptr<Quadrature>& rule = rules[count];
-    if (!rule) {
+    if (!rule)
         rule = std::make_unique<Quadrature>(make_gauss_legendre(count));
-    }
     return *rule;
 }
 

@@ -43,9 +43,8 @@ double integrate_sin2(double from, double to, int count, const Function& f) {
 template <typename Function>
 double integrate_pieces(const std::vector<double>& breaks, int count, const Function& f) {
     double sum = 0.0;
-    for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
         sum += integrate_sin2(breaks[i], breaks[i + 1], count, f);
-    }
     return sum;
 }
 

@@ -97,9 +97,8 @@ StackValues stack_at(const LayerStack& stack, double wavelength_nm) {
 }
 
 double alpha_from_roughness_deg(Distribution distribution, double roughness_deg) {
-    if (roughness_deg == 0.0) {
+    if (roughness_deg == 0.0)
         return 0.0;
-    }
     const double beta = roughness_deg * std::numbers::pi / 180.0;
     const double sin_beta = std::sin(beta);
     // ln cos by log1p: at 0.01 degrees cos differs from 1 by 1.5e-8 only

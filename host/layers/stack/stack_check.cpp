@@ -13,9 +13,8 @@ namespace {
 /// NaN is never good.
 void check(bool good, const std::string& whose, const char* what, double value,
            const char* remedy) {
-    if (!good) {
+    if (!good)
         throw_input_error({}, fmt::format("{} has {} {}", whose, what, value), remedy);
-    }
 }
 
 void check_alpha(double alpha, const std::string& whose) {
@@ -54,17 +53,15 @@ void check_layer(const LayerValues& layer, const std::string& whose) {
     check_film(layer.film, layer.wavelength_nm, whose);
     check(layer.flake_coverage >= 0.0 && layer.flake_coverage <= 1.0, whose, "flake coverage",
           layer.flake_coverage, "it must be between 0 and 1");
-    if (layer.flake_coverage > 0.0) {
+    if (layer.flake_coverage > 0.0)
         check_reflector(layer.flakes, "the flakes' conductor of " + whose);
-    }
 }
 
 } // namespace
 
 void check_stack(const StackValues& stack) {
-    for (std::size_t k = 0; k < stack.size(); ++k) {
+    for (std::size_t k = 0; k < stack.size(); ++k)
         check_layer(stack[k], fmt::format("layer {}", k + 1));
-    }
 }
 
 void check_conductor(const ConductorValues& conductor) {

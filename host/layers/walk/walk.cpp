@@ -68,11 +68,10 @@ public:
 private:
     template <typename Vector>
     void add_rows(Vector& sums, const Eigen::ArrayXd& factor) const {
-        if (start_) {
+        if (start_)
             sums(band_) += rows_(0) * factor(0);
-        } else {
+        else
             sums.array() += rows_ * factor;
-        }
     }
 
     void draw_band(double u) {
@@ -84,9 +83,8 @@ private:
             if (column(to) > 0.0) {
                 band_ = to; // the last possible one where rounding leaves a rest
                 rest -= column(to);
-                if (rest < 0.0) {
+                if (rest < 0.0)
                     break;
-                }
             }
         }
     }
@@ -175,16 +173,13 @@ private:
     /// Calls connect(direction index, visit) for every visit of this element.
     template <typename Connect>
     void for_visits(const Connect& connect) {
-        if (!connectors_ || connectors_->size() == 0) {
+        if (!connectors_ || connectors_->size() == 0)
             return;
-        }
         const std::vector<WalkConnector>& made = connectors_->of(carried_);
         for (std::size_t k = 0; k < made.size(); ++k) {
-            for (const WalkConnector::Visit& visit : made[k].visits) {
-                if (visit.element == static_cast<std::size_t>(at_)) {
+            for (const WalkConnector::Visit& visit : made[k].visits)
+                if (visit.element == static_cast<std::size_t>(at_))
                     connect(k, visit);
-                }
-            }
         }
     }
     void score(std::size_t direction, const Eigen::ArrayXd& factor) {
@@ -196,14 +191,12 @@ private:
         const bool from_below = d_.z > 0.0;
         const Vec3 v = arriving(d_);
         SurfaceEvent event;
-        if (surface.is_rough()) {
+        if (surface.is_rough())
             event = meet_rough(surface, from_below, v);
-        } else {
+        else
             event = meet_smooth_surface(surface, from_below, v, random_);
-        }
-        if (tally_ && !carried_.reached()) {
+        if (tally_ && !carried_.reached())
             carried_.add_to(tally_->lost, event.lost);
-        }
         carried_.scale(event.weight);
         going_ = event.weight > 0.0;
         d_ = leaving(event.w, event.same_side == from_below);
@@ -214,9 +207,8 @@ private:
         is_delta_ = false;
         std::vector<SurfaceTarget> targets;
         for_visits([&](std::size_t, const WalkConnector::Visit& visit) {
-            if (can_connect(from_below, visit)) {
+            if (can_connect(from_below, visit))
                 targets.push_back({from_below == (visit.d.z > 0.0), arriving(visit.d)});
-            }
         });
         const SurfaceEvent event = meet_rough_surface(surface, from_below, v, targets, random_);
         auto target = targets.begin();
@@ -252,9 +244,8 @@ private:
             const double factor = roulette(carried_.largest(), random_);
             carried_.scale(factor);
             going_ = factor > 0.0;
-            if (!going_) {
+            if (!going_)
                 return;
-            }
         }
     }
 
@@ -306,9 +297,8 @@ WalkTally::Parts empty_parts(const WalkMaterial& material) {
 
 void check_direction(const Vec3& w) {
     // a direction that comes along the surface brings no light
-    if (!(w.z > 0.0)) {
+    if (!(w.z > 0.0))
         throw std::invalid_argument("a walk needs directions above the surface");
-    }
 }
 
 } // namespace
@@ -319,9 +309,8 @@ void WalkTally::set_zero() {
         parts.specular.setZero();
     };
     clear(hemispherical);
-    for (Parts& parts : directional) {
+    for (Parts& parts : directional)
         clear(parts);
-    }
     delta.setZero();
     lost.setZero();
 }
@@ -348,18 +337,16 @@ void LayerWalk::eval(const Vec3& wi, std::span<const Vec3> wo, std::uint64_t see
         if (walk.has_left()) {
             walk.carried().add_to(tally.hemispherical,
                                   Eigen::ArrayXd::Ones(walk.carried().rows().size()));
-            if (walk.is_delta()) {
+            if (walk.is_delta())
                 walk.carried().add_to(tally.delta, 1.0);
-            }
         }
     };
     if (serves_all_bands()) {
         follow(std::nullopt);
         return;
     }
-    for (int band = 0; band < bands(); ++band) {
+    for (int band = 0; band < bands(); ++band)
         follow(band);
-    }
 }
 
 WalkSample LayerWalk::sample(const Vec3& wi, int band, WalkRandom& random) const {

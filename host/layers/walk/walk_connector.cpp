@@ -51,9 +51,8 @@ private:
     void pass() { at_ += d_.z < 0.0 ? 1 : -1; }
 
     void pass_slab(const WalkElement& slab) {
-        if (slab.tau_scattering > 0.0) {
+        if (slab.tau_scattering > 0.0)
             visit();
-        }
         weight_ *= (-(slab.tau + slab.tau_scattering) / std::max(std::fabs(d_.z), 1e-300)).exp();
         pass();
     }
@@ -94,9 +93,8 @@ private:
         }
         const double through = 1.0 - element.surface.reflectance(false, std::min(v.z, 1.0));
         going_ = through > 0.0;
-        if (going_) {
+        if (going_)
             follow({false, refract_at_smooth_surface(element.surface, false, v), through, 0.0});
-        }
     }
 
     void follow(const SurfaceEvent& event) {
@@ -145,9 +143,8 @@ Vec3 sample_henyey_greenstein(double g, const Vec3& d, WalkRandom& random) {
 
 double roulette(double weight, WalkRandom& random) {
     constexpr double floor = 0.02;
-    if (weight >= floor) {
+    if (weight >= floor)
         return 1.0;
-    }
     return random.next() * floor < weight ? floor / weight : 0.0;
 }
 

@@ -14,9 +14,8 @@ namespace {
 /// The matrix as light feels it, or with nothing in it for a conductor.
 Eigen::MatrixXd checked_matrix(const SubstrateValues& substrate, std::size_t bands) {
     const auto n = static_cast<Eigen::Index>(bands);
-    if (!substrate.conductor.empty()) {
+    if (!substrate.conductor.empty())
         return Eigen::MatrixXd::Zero(n, n);
-    }
     if (substrate.matrix.rows() != n || substrate.matrix.cols() != n) {
         throw_input_error({},
                           fmt::format("a matrix of {} x {} for {} bands", substrate.matrix.rows(),
@@ -59,9 +58,8 @@ WalkElements elements_at(const StackValues& stack, const SubstrateValues& substr
                          std::size_t band, double wavelength_nm) {
     check_stack(stack);
     WalkElements elements;
-    for (std::size_t k = 0; k < stack.size(); ++k) {
+    for (std::size_t k = 0; k < stack.size(); ++k)
         add_layer(elements, stack, k);
-    }
     const double ior = stack.empty() ? 1.0 : stack.back().ior;
     if (!substrate.conductor.empty()) {
         check_conductor(substrate.conductor[band]);
@@ -79,9 +77,8 @@ WalkElements elements_at(const StackValues& stack, const SubstrateValues& substr
 
 /// Values with what walks that serve all bands may differ in left out.
 StackValues ways_of(StackValues stack) {
-    for (LayerValues& layer : stack) {
+    for (LayerValues& layer : stack)
         layer.tau = 0.0;
-    }
     return stack;
 }
 
@@ -101,16 +98,14 @@ WalkMaterial::WalkMaterial(const LayerStack& stack, const SubstrateValues& subst
             (substrate.conductor.empty() || (substrate.conductor[band] == substrate.conductor[0] &&
                                              substrate.conductor[0].film.thickness_nm == 0.0));
     }
-    if (!same) {
+    if (!same)
         return;
-    }
     shared_ = by_band_[0];
     for (std::size_t e = 0; e < shared_.size(); ++e) {
         if (shared_[e].kind == WalkElement::Kind::Slab) {
             shared_[e].tau.resize(bands());
-            for (int band = 0; band < bands(); ++band) {
+            for (int band = 0; band < bands(); ++band)
                 shared_[e].tau(band) = at_band(band)[e].tau(0);
-            }
         }
     }
 }

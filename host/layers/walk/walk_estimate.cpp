@@ -40,9 +40,8 @@ void for_arrays(WalkTally& to, const WalkTally& from, const Function& f) {
         f(a.specular, b.specular);
     };
     both(to.hemispherical, from.hemispherical);
-    for (std::size_t k = 0; k < to.directional.size(); ++k) {
+    for (std::size_t k = 0; k < to.directional.size(); ++k)
         both(to.directional[k], from.directional[k]);
-    }
     f(to.delta, from.delta);
     f(to.lost, from.lost);
 }
@@ -79,12 +78,10 @@ public:
         const std::uint64_t end = std::min(block_size_, walks_ + walks);
         tbb::parallel_for(std::size_t{0}, groups, [&](std::size_t g) {
             const std::uint64_t first = (g * blocks_in_group + blocks_) * block_size_;
-            for (std::uint64_t k = walks_; k < end; ++k) {
+            for (std::uint64_t k = walks_; k < end; ++k)
                 walk_.eval(wi_, wo_, seed_, first + k, groups_[g].block);
-            }
-            if (end == block_size_) {
+            if (end == block_size_)
                 groups_[g].end_block();
-            }
         });
         walks_ = end % block_size_;
         blocks_ += end == block_size_ ? 1 : 0;
@@ -105,9 +102,8 @@ public:
 
     void restore(const WalkState& state) {
         if (state.numbers.size() != this->state().numbers.size() ||
-            state.blocks > blocks_in_group || state.walks >= block_size_) {
+            state.blocks > blocks_in_group || state.walks >= block_size_)
             throw_runtime_error("the walk to go on from is another one");
-        }
         const double* next = state.numbers.data();
         for (BlockGroup& group : groups_) {
             for (WalkTally* tally : {&group.sum, &group.squares, &group.block}) {
@@ -123,11 +119,9 @@ public:
 
     /// All groups together, pair by pair.
     BlockGroup total() {
-        for (std::size_t apart = 1; apart < groups; apart *= 2) {
-            for (std::size_t g = 0; g < groups; g += 2 * apart) {
+        for (std::size_t apart = 1; apart < groups; apart *= 2)
+            for (std::size_t g = 0; g < groups; g += 2 * apart)
                 groups_[g].add(groups_[g + apart]);
-            }
-        }
         return std::move(groups_[0]);
     }
 
@@ -147,14 +141,12 @@ void walk_to_the_end(WalkRun& run, StopFlag stop, const WalkPause& pause) {
         const Clock::time_point start = Clock::now();
         run.advance(walks);
         const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-        if (seconds < 0.5 * seconds_at_a_time) {
+        if (seconds < 0.5 * seconds_at_a_time)
             walks *= 2;
-        } else if (seconds > 2.0 * seconds_at_a_time) {
+        else if (seconds > 2.0 * seconds_at_a_time)
             walks = std::max<std::uint64_t>(1, walks / 2);
-        }
-        if (pause) {
+        if (pause)
             pause(run.is_done(), [&] { return run.state(); });
-        }
     }
 }
 
@@ -167,9 +159,8 @@ WalkEstimate estimate_walk(const LayerWalk& walk, const kernels::Vec3& wi,
     const std::uint64_t size =
         std::max((samples + walk_blocks - 1) / walk_blocks, std::uint64_t{1});
     WalkRun run(walk, wi, wo, size, seed);
-    if (!from.numbers.empty()) {
+    if (!from.numbers.empty())
         run.restore(from);
-    }
     walk_to_the_end(run, stop, pause);
     const BlockGroup sums = run.total();
     const double blocks = static_cast<double>(walk_blocks);

@@ -47,26 +47,22 @@ public:
     /// Flux density, 1/sr, of light from v that facets seen by v send towards w, shadowing left
     /// out (Heitz et al. 2016, eqs. 32 and 33); h is the facet's normal, if there is one.
     double density(const Vec3& v, const SurfaceTarget& target, Vec3& h) const {
-        if (surface_.is_conductor && !target.same_side) {
+        if (surface_.is_conductor && !target.same_side)
             return 0.0;
-        }
         h = target.same_side ? kernels::vec3_add(v, target.w)
                              : kernels::vec3_sub(kernels::vec3_scale(target.w, eta_), v);
         const double length = std::sqrt(kernels::vec3_dot(h, h));
-        if (!(length > 0.0)) {
+        if (!(length > 0.0))
             return 0.0;
-        }
         h = kernels::vec3_scale(h, (h.z > 0.0 ? 1.0 : -1.0) / length);
         const double cos_v = kernels::vec3_dot(v, h), cos_w = kernels::vec3_dot(target.w, h);
         const double area = visible_area(v);
-        if (!(cos_v > 0.0) || !(cos_w > 0.0) || !(area > 0.0)) {
+        if (!(cos_v > 0.0) || !(cos_w > 0.0) || !(area > 0.0))
             return 0.0;
-        }
         const double d = kernels::microfacet_d(distribution_, surface_.alpha, h) / area;
         const double r = reflectance(v, h);
-        if (target.same_side) {
+        if (target.same_side)
             return 0.25 * d * r;
-        }
         const double denominator = eta_ * cos_w - cos_v; // with sign, squared
         return (1.0 - r) * d * cos_v * eta_ * eta_ * cos_w / (denominator * denominator);
     }
@@ -103,9 +99,8 @@ struct Branch {
     double weight;
 };
 Branch choose_branch(const WalkSurface& surface, double reflectance, WalkRandom& random) {
-    if (surface.is_conductor) {
+    if (surface.is_conductor)
         return {true, reflectance};
-    }
     return {random.next() < reflectance, 1.0};
 }
 
@@ -113,9 +108,8 @@ void add_single_values(const FacetLobes& lobes, const Vec3& v, std::span<Surface
     for (SurfaceTarget& target : targets) {
         Vec3 h{};
         const double density = lobes.density(v, target, h);
-        if (density > 0.0) {
+        if (density > 0.0)
             target.value += density * lobes.visible(v, target.w, h) / target.w.z;
-        }
     }
 }
 
@@ -123,9 +117,8 @@ void add_single_values(const FacetLobes& lobes, const Vec3& v, std::span<Surface
 SurfaceEvent scatter_once(const WalkSurface& surface, const FacetLobes& lobes, const Vec3& v,
                           WalkRandom& random) {
     const Vec3 h = lobes.sample(v, random);
-    if (!(kernels::vec3_dot(v, h) > 0.0)) {
+    if (!(kernels::vec3_dot(v, h) > 0.0))
         return {true, v, 0.0, 1.0};
-    }
     const Branch branch = choose_branch(surface, lobes.reflectance(v, h), random);
     SurfaceEvent event;
     event.same_side = branch.reflects;
@@ -146,9 +139,8 @@ SurfaceEvent scatter_in_cavity(const WalkSurface& surface, const FacetLobes& lob
     double arrives = 0.0;
     const auto offer = [&](bool reflects, const Vec3& w, double share, double kept) {
         arrives += share / facets;
-        if (!(w.z > 0.0) || !(share * kept > 0.0)) {
+        if (!(w.z > 0.0) || !(share * kept > 0.0))
             return;
-        }
         event.weight += share * kept / facets;
         if (random.next() * event.weight < share * kept / facets) {
             event.same_side = reflects;
@@ -158,9 +150,8 @@ SurfaceEvent scatter_in_cavity(const WalkSurface& surface, const FacetLobes& lob
     for (int k = 0; k < facets; ++k) {
         const Vec3 h = lobes.sample(v, random);
         const double cos_v = kernels::vec3_dot(v, h);
-        if (!(cos_v > 0.0)) {
+        if (!(cos_v > 0.0))
             continue;
-        }
         const double r = lobes.reflectance(v, h), sampled = cos_v / (v.z * h.z);
         const Vec3 reflected = lobes.reflected(v, h);
         offer(true, reflected, r, sampled * lobes.visible(v, reflected, h));
@@ -236,9 +227,8 @@ SurfaceEvent walk_between_facets(const WalkSurface& surface, bool from_below, Ve
             event.same_side = !event.same_side;
             height = 1.0 - height;
         }
-        if (random.next() < escape(event.w, height)) {
+        if (random.next() < escape(event.w, height))
             return event;
-        }
         height =
             microsurface::next_height(distribution, surface.alpha, event.w, height, random.next());
         v = microsurface::negated(event.w);
@@ -321,13 +311,11 @@ Vec3 refract_at_smooth_surface(const WalkSurface& surface, bool from_below, cons
 
 SurfaceEvent meet_rough_surface(const WalkSurface& surface, bool from_below, const Vec3& v,
                                 std::span<SurfaceTarget> targets, WalkRandom& random) {
-    if (surface.distribution != Distribution::Blinn && surface.scattering == Scattering::Multiple) {
+    if (surface.distribution != Distribution::Blinn && surface.scattering == Scattering::Multiple)
         return walk_between_facets(surface, from_below, v, targets, random);
-    }
     const FacetLobes lobes(surface, from_below);
-    if (surface.scattering == Scattering::Multiple) {
+    if (surface.scattering == Scattering::Multiple)
         return scatter_and_give_back(surface, from_below, lobes, v, targets, random);
-    }
     add_single_values(lobes, v, targets);
     return lobes.is_blinn() ? scatter_in_cavity(surface, lobes, v, random)
                             : scatter_once(surface, lobes, v, random);

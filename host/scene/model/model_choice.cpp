@@ -5,24 +5,19 @@
 namespace reradiant {
 
 std::optional<std::string> adding_refusal(const Material& material) {
-    if (material.substrate.type == SubstrateType::Conductor) {
+    if (material.substrate.type == SubstrateType::Conductor)
         return "adding does not know conductors";
-    }
     return adding_refusal(material.stack);
 }
 
 std::optional<std::string> device_walk_refusal(const Material& material) {
-    if (material.stack.is_dispersive()) {
+    if (material.stack.is_dispersive())
         return "the renderer's walk needs an IOR that does not depend on wavelength";
-    }
-    if (material.stack.has_films()) {
+    if (material.stack.has_films())
         return "the renderer's walk knows no films between dielectrics";
-    }
-    for (const Layer& layer : material.stack.layers) {
-        if (layer.flakes && !(layer.flakes->reflector.alpha > 0.0)) {
+    for (const Layer& layer : material.stack.layers)
+        if (layer.flakes && !(layer.flakes->reflector.alpha > 0.0))
             return "the renderer's walk knows no smooth flakes";
-        }
-    }
     return std::nullopt;
 }
 
@@ -32,9 +27,8 @@ namespace {
 ModelChoice choose_beyond_adding(const Material& material, const std::string& refusal,
                                  ModelUse use) {
     const ModelChoice walk{Model::Walk, "auto: walk, because " + refusal};
-    if (use == ModelUse::Measure) {
+    if (use == ModelUse::Measure)
         return walk;
-    }
     if (material.stack.layers.empty()) {
         return {Model::WeidlichWilkie,
                 "auto: weidlich-wilkie, the reflection by the facets of a bare conductor"};
@@ -61,12 +55,10 @@ ModelChoice choose_model(const Material& material, Model requested, ModelUse use
         throw_input_error(material.position, *refusal,
                           "use the model auto, walk or weidlich-wilkie");
     }
-    if (model != Model::Auto) {
+    if (model != Model::Auto)
         return {model, ""};
-    }
-    if (!refusal) {
+    if (!refusal)
         return {Model::Adding, "auto: adding, every interreflection over the diffuse substrate"};
-    }
     return choose_beyond_adding(material, *refusal, use);
 }
 

@@ -214,14 +214,13 @@ private:
 
     void collect_methods(const std::vector<std::string>& measured_now) {
         result_.methods.clear();
-        for (std::size_t k = 0; k < options_.methods.size(); ++k) {
+        for (std::size_t k = 0; k < options_.methods.size(); ++k)
             if (take_kept(k))
                 result_.methods.back().resumed =
                     std::none_of(measured_now.begin(), measured_now.end(),
                                  [&](const std::string& one) { return one[k] == '+'; });
             else if (!result_.interrupted)
                 refuse_folder("the method " + options_.methods[k].name);
-        }
     }
 
     std::string method_identity(std::size_t index) const {
