@@ -1,15 +1,15 @@
 #include "host/base/atomic_file.h"
-#include "host/base/error.h"
-#include "host/base/paths.h"
+#include "host/base/logging.h"
 #include "host/report/json_file.h"
 #include "host/scene/toml/load_state.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
 #include "tools/command.h"
 #include "tools/material_tree.h"
 #include "tools/outputs.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <iostream>
@@ -97,8 +97,8 @@ Classification classify(const ClassifyOptions& options) {
         if (!options.answers.at(i).empty() &&
             std::find(result.asked.begin(), result.asked.end(), static_cast<Question>(i)) ==
                 result.asked.end())
-            spdlog::warn("--{} makes no difference: the tree does not ask it here",
-                         question_texts().at(i).option);
+            logging::warn("--{} makes no difference: the tree does not ask it here",
+                          question_texts().at(i).option);
     return result;
 }
 

@@ -1,15 +1,15 @@
 #include "host/base/atomic_file.h"
-#include "host/base/error.h"
+#include "host/base/logging.h"
 #include "host/report/json_file.h"
 #include "host/report/svg.h"
 #include "host/spectral/colour/colour_report.h"
 #include "host/spectral/evidence/matrix_warnings.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation_file.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -206,7 +206,7 @@ int run_colour(ColourOptions options, const CommonOptions& common) {
         const ColourReport& report = pair.report;
         json[report.illuminant] = colour_report_json(report);
         for (const std::string& warning : report.warnings)
-            spdlog::warn("{}: {}", options.matrix.string(), warning);
+            logging::warn("{}: {}", options.matrix.string(), warning);
         print(report, options);
     }
     write_plot(options, seen);

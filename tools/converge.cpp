@@ -1,10 +1,11 @@
 #include "host/study/converge/converge.h"
-#include "host/base/error.h"
 #include "host/film/display_picture.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
 #include "host/study/converge/converge_page.h"
 #include "host/study/converge/converge_store.h"
+#include "reradiant/error.h"
+#include "reradiant/scene_file.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
@@ -12,7 +13,7 @@
 #include "tools/outputs.h"
 #include "tools/parse_options.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,20 +1,24 @@
 #include "host/base/atomic_file.h"
-#include "host/base/error.h"
+#include "host/base/output_ending.h"
 #include "host/base/output_file.h"
-#include "host/base/paths.h"
 #include "host/base/quiet_log.h"
 #include "host/report/json_file.h"
 #include "host/scene/mitsuba/mitsuba_import.h"
 #include "host/scene/toml/scene_table.h"
 #include "host/scene/toml/toml_document.h"
 #include "host/spectral/evidence/matrix_warnings.h"
-#include "host/spectral/files/matrix_io.h"
 #include "host/spectral/spectrum/spectrum_formats.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/scene_file.h"
+#include "reradiant/spectrum_file.h"
 #include "tools/command.h"
 #include "tools/file_kind.h"
 #include "tools/outputs.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <functional>
 #include <memory>

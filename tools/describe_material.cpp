@@ -1,6 +1,6 @@
 #include "tools/describe_material.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

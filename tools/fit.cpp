@@ -1,6 +1,5 @@
-#include "host/fit/result/fit.h"
-#include "host/base/error.h"
-#include "host/fit/data/model_file.h"
+#include "reradiant/fit.h"
+#include "host/base/logging.h"
 #include "host/fit/result/fit_memory.h"
 #include "host/fit/result/fit_report.h"
 #include "host/fit/result/fit_summary.h"
@@ -9,7 +8,10 @@
 #include "host/report/progress.h"
 #include "host/scene/model/named_files.h"
 #include "host/scene/toml/stack_file.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/error.h"
+#include "reradiant/fit.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/scene_file.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
@@ -18,7 +20,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <cstdio>
@@ -98,10 +99,10 @@ void print_summary(const FitOptions& options, const FitResult& result) {
 
 void warn(const FitResult& result) {
     for (const std::string& warning : result.warnings)
-        spdlog::warn("{}", warning);
+        logging::warn("{}", warning);
     if (result.stack)
         for (const std::string& ambiguity : result.stack->ambiguities)
-            spdlog::warn("{}", ambiguity);
+            logging::warn("{}", ambiguity);
 }
 
 /// Says in the last line that residuals are not noise; the exit code. It is no failure where the
@@ -191,9 +192,10 @@ int run_fit(const FitOptions& options, const CommonOptions& common) {
                                       std::filesystem::absolute(options.model_file).parent_path());
         const double difference = write_model_file(options.model_file, result, beside);
         if (difference > 0.01)
-            spdlog::warn("{}: tables integrated over the bands differ from the fitted matrix by up "
-                         "to {:.1f} % of its peak",
-                         options.model_file.string(), 100.0 * difference);
+            logging::warn(
+                "{}: tables integrated over the bands differ from the fitted matrix by up "
+                "to {:.1f} % of its peak",
+                options.model_file.string(), 100.0 * difference);
     }
     if (!options.report.empty())
         write_fit_report(options.report, data, result);

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/film/merge.h"
-#include "host/layers/stack/stack.h"
-#include "host/spectral/spectrum/grid.h"
+#include "reradiant/layer_stack.h"
+#include "reradiant/merge.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
-#include "host/base/error.h"
 #include "host/cluster/cluster.h"
+#include "reradiant/error.h"
 #include "tools/command.h"
 #include "tools/versions.h"
 

@@ -1,11 +1,14 @@
-#include "host/measure/measure.h"
-#include "host/base/error.h"
-#include "host/base/paths.h"
+#include "reradiant/measure.h"
+#include "host/measure/measure_substrate.h"
+#include "host/measure/walk_continuation.h"
 #include "host/measure/walk_measurement.h"
 #include "host/measure/walk_states.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
 #include "host/scene/model/named_files.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
+#include "reradiant/scene_file.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
@@ -111,13 +114,15 @@ std::optional<Measurement> measure_and_keep(const MeasureOptions& options, const
                                             MeasureRequest request, bool quiet) {
     KeptWork kept(options.output, walk_identity(material_file(options), material, request),
                   options.checkpoint_seconds);
+    WalkContinuation walks;
     if (options.resume)
-        kept.resume([&](const nlohmann::json& state) { request.walked = walk_states_from(state); });
+        kept.resume([&](const nlohmann::json& state) { walks.states = walk_states_from(state); });
     WalkProgress progress(quiet, request);
-    request.pause = [&](const WalkStates& states) {
+    walks.pause = [&](const WalkStates& states) {
         kept.keep_when_due([&] { return walk_states_json(states()); });
         progress.update(states);
     };
+    request.walks = &walks;
     request.stop = interrupt_flag();
     catch_interrupts();
     try {

@@ -1,10 +1,10 @@
 #include "tools/outputs.h"
 
-#include "host/base/error.h"
 #include "host/base/output_ending.h"
 #include "host/base/output_file.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

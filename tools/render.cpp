@@ -1,16 +1,18 @@
-#include "host/base/error.h"
-#include "host/device/device.h"
+#include "reradiant/render.h"
+#include "host/base/logging.h"
 #include "host/film/display_picture.h"
-#include "host/film/merge.h"
-#include "host/film/spectral_image.h"
 #include "host/render/checkpoint/render_identity.h"
 #include "host/render/film/render_statistics.h"
-#include "host/render/wavefront/renderer.h"
 #include "host/render/wavefront/team_render.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
 #include "host/scene/model/named_files.h"
-#include "host/scene/model/scene.h"
+#include "reradiant/device.h"
+#include "reradiant/error.h"
+#include "reradiant/merge.h"
+#include "reradiant/scene.h"
+#include "reradiant/scene_file.h"
+#include "reradiant/spectral_image.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
@@ -20,7 +22,6 @@
 #include "tools/tev_preview.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -193,7 +194,7 @@ int run_render(RenderCommand command, const CommandContext& context) {
         return report_interruption(result, command);
     describe_image(result, scene, device, command.render, context.command_line);
     if (result.non_finite > 0)
-        spdlog::warn("{} samples were not finite and were left out", result.non_finite);
+        logging::warn("{} samples were not finite and were left out", result.non_finite);
     write_results(command, result);
     if (!common.json.empty()) {
         auto json = render_statistics(result, device, command.model);

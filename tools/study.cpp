@@ -13,7 +13,7 @@
 #include "tools/number_options.h"
 #include "tools/outputs.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <memory>

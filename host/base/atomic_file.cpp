@@ -1,10 +1,10 @@
 #include "host/base/atomic_file.h"
 
-#include "host/base/error.h"
 #include "host/base/output_file.h"
-#include "host/base/paths.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 #include <cerrno>

@@ -1,6 +1,6 @@
-#include "host/base/error.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

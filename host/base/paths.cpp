@@ -1,9 +1,9 @@
-#include "host/base/paths.h"
+#include "reradiant/paths.h"
 
-#include "host/base/error.h"
+#include "host/base/logging.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <cerrno>
 #include <cstdlib>
@@ -60,7 +60,7 @@ void warn_once(const std::string& text) {
     static std::set<std::string> said;
     const std::lock_guard lock(mutex);
     if (said.insert(text).second)
-        spdlog::warn("{}", text);
+        logging::warn("{}", text);
 }
 
 /// What the environment names for caches, best first, and how messages call it.

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/device/device.h"
 #include "host/device/program.h"
+#include "reradiant/device.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "host/check/probe_source.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

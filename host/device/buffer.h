@@ -1,6 +1,7 @@
 #pragma once
 
-#include "host/device/device.h"
+#include "host/device/opencl_device.h"
+#include "reradiant/device.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -13,12 +14,14 @@ namespace reradiant {
 class DeviceStorage {
 public:
     DeviceStorage(const Device& device, std::size_t bytes)
-        : shared_(device.info().shares_memory ? shared_memory(device.context(), bytes) : nullptr,
-                  Release{device.context(), device.queue()}),
-          buffer_(shared_ ? cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR,
-                                       bytes, shared_.get())
-                          : cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR,
-                                       bytes)) {}
+        : shared_(device.info().shares_memory ? shared_memory(device.opencl().context, bytes)
+                                              : nullptr,
+                  Release{device.opencl().context, device.opencl().queue}),
+          buffer_(shared_
+                      ? cl::Buffer(device.opencl().context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR,
+                                   bytes, shared_.get())
+                      : cl::Buffer(device.opencl().context,
+                                   CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes)) {}
 
     const cl::Buffer& buffer() const { return buffer_; }
     /// What the buffer lies in, or null where it must be mapped.
@@ -59,8 +62,8 @@ public:
     DeviceArray(const Device& device, std::span<const T> values)
         : DeviceArray(device, values.size()) {
         if (!values.empty())
-            device.queue().enqueueWriteBuffer(buffer(), CL_TRUE, 0, values.size_bytes(),
-                                              values.data());
+            device.opencl().queue.enqueueWriteBuffer(buffer(), CL_TRUE, 0, values.size_bytes(),
+                                                     values.data());
     }
 
     const cl::Buffer& buffer() const { return storage_->buffer(); }

@@ -1,9 +1,9 @@
 #include "host/device/driver_cache.h"
 
-#include "host/base/paths.h"
+#include "host/base/logging.h"
+#include "reradiant/paths.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <cerrno>
 #include <csignal>
@@ -49,9 +49,9 @@ void discard(const fs::path& folder) {
     away += "-discarded-" + std::to_string(::getpid());
     fs::rename(folder, away, ignored);
     fs::remove_all(away, ignored);
-    spdlog::info("the last program that used {} died: kernels are built anew, in case one of them "
-                 "is damaged",
-                 folder.string());
+    logging::info("the last program that used {} died: kernels are built anew, in case one of them "
+                  "is damaged",
+                  folder.string());
 }
 
 /// The mark of this process; it goes when the process ends by itself.
@@ -73,8 +73,8 @@ bool user_has_chosen() {
         return false;
     const std::string reason = why_unusable(chosen);
     if (!reason.empty())
-        spdlog::warn("$POCL_CACHE_DIR, {}, cannot be used: {}; PoCL's kernels go elsewhere", chosen,
-                     reason);
+        logging::warn("$POCL_CACHE_DIR, {}, cannot be used: {}; PoCL's kernels go elsewhere",
+                      chosen, reason);
     return reason.empty();
 }
 

@@ -1,11 +1,12 @@
 #include "host/device/driver_list.h"
 
 #include "host/base/regular_file.h"
-#include "host/device/device.h"
+#include "host/device/opencl_device.h"
+#include "reradiant/device.h"
 
 #include <CL/cl_ext.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,22 +1,12 @@
 #pragma once
 
-#include "host/device/device.h"
+#include "host/device/opencl_device.h"
 #include "host/device/source.h"
 
 #include <cstddef>
 #include <string>
-#include <utility>
 
 namespace reradiant {
-
-/// What building the programs of a scene took.
-struct BuildStatistics {
-    int built = 0, from_cache = 0;
-    double seconds = 0.0;
-    std::size_t source_bytes = 0; ///< before the compiler leaves anything out
-    KernelDefines defines;        ///< of the last program
-    std::size_t binary_bytes = 0; ///< of the programs as the driver keeps them
-};
 
 /// Builds a kernel file ("kernels/gather.cl") for a device, or takes it from those that the
 /// device has loaded or from the disk cache, whose key is the source, the defines, the device and

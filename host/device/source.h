@@ -1,14 +1,11 @@
 #pragma once
 
+#include "reradiant/device.h"
+
 #include <filesystem>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace reradiant {
-
-/// Names and values that specialise a program, passed as #define.
-using KernelDefines = std::vector<std::pair<std::string, long>>;
 
 /// A kernel file ("kernels/gather.cl", relative to `root`) with its headers (`#include
 /// "kernels/..."`) put in place, each once, and #line directives so that the compiler's messages

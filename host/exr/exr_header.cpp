@@ -1,9 +1,9 @@
 #include "host/exr/exr_header.h"
 
-#include "host/base/error.h"
 #include "host/base/regular_file.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "host/base/error.h"
 #include "host/exr/exr_limits.h"
+#include "reradiant/error.h"
 
 #include <ImfMultiPartInputFile.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <unistd.h>

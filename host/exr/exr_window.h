@@ -1,11 +1,11 @@
 #pragma once
 
-#include "host/base/error.h"
+#include "reradiant/error.h"
 
 #include <ImathBox.h>
 #include <ImfHeader.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdint>

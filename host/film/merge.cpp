@@ -1,7 +1,7 @@
-#include "host/film/merge.h"
+#include "reradiant/merge.h"
 
-#include "host/base/error.h"
 #include "host/film/colour_image.h"
+#include "reradiant/error.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/scene/model/scene.h"
 #include "kernels/core/portable.h"
+#include "reradiant/scene.h"
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "host/geometry/primitives.h"
-#include "host/scene/model/scene.h"
 #include "kernels/core/shared.h"
+#include "reradiant/scene.h"
 
 #include <vector>
 

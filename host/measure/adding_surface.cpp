@@ -1,14 +1,14 @@
 #include "host/measure/surface_angles.h"
 #include "host/measure/surface_model.h"
 
-#include "host/base/error.h"
-#include "host/layers/models/adding.h"
 #include "host/layers/models/effective_matrix.h"
 #include "host/layers/models/oren_nayar_substrate.h"
 #include "host/layers/rough/interface_walk.h"
 #include "kernels/scatter/fresnel.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
+#include "reradiant/adding.h"
+#include "reradiant/error.h"
 
 #include <numbers>
 

@@ -1,7 +1,7 @@
 #include "host/measure/layered_bsdf.h"
 
-#include "host/base/error.h"
 #include "kernels/stack/layer_stack.h"
+#include "reradiant/error.h"
 
 #include <algorithm>
 #include <cmath>

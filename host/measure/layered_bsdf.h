@@ -1,8 +1,9 @@
 #pragma once
 
 #include "host/measure/surface_model.h"
-#include "host/scene/model/scene.h"
+#include "reradiant/scene.h"
 
+#include <Eigen/Core>
 #include <array>
 
 namespace reradiant {

@@ -1,14 +1,17 @@
-#include "host/measure/measure.h"
+#include "reradiant/measure.h"
+#include "host/measure/measure_substrate.h"
+#include "host/scene/model/substrate.h"
 
 #include "host/measure/measure_memory.h"
 
-#include "host/base/error.h"
 #include "host/measure/surface_angles.h"
 #include "host/measure/surface_model.h"
 #include "host/measure/walk_measurement.h"
 #include "host/scene/model/model_choice.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <Eigen/Core>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -176,7 +179,7 @@ SubstrateValues measured_substrate(const Substrate& substrate, const WavelengthG
         return measured;
     }
     measured.sigma = substrate.type == SubstrateType::OrenNayar ? substrate.sigma : 0.0;
-    measured.matrix = substrate.fluorescence_on(bands);
+    measured.matrix = fluorescence_of(substrate, bands);
     for (int band = 0; band < bands.count; ++band)
         measured.matrix(band, band) += substrate.reflectance(bands.centre_nm(band));
     return measured;

@@ -1,5 +1,5 @@
 #include "host/base/atomic_file.h"
-#include "host/measure/measure.h"
+#include "reradiant/measure.h"
 
 #include <fmt/format.h>
 

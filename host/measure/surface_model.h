@@ -1,9 +1,9 @@
 #pragma once
 
-#include "host/layers/models/adding.h"
 #include "host/layers/stack/substrate_values.h"
-#include "host/spectral/spectrum/grid.h"
 #include "kernels/core/portable.h"
+#include "reradiant/adding.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <Eigen/Core>
 

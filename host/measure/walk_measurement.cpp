@@ -2,8 +2,9 @@
 
 #include "host/layers/walk/walk_estimate.h"
 #include "host/measure/surface_angles.h"
+#include "host/measure/walk_continuation.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -78,28 +79,30 @@ void add_rows(Measurement& measurement, const Pairs& possible, const MeasureRow&
 /// What there is of every theta_i, in order, for a request that wants to hear of it.
 class WalkJournal {
 public:
-    explicit WalkJournal(const MeasureRequest& request) : request_(request) {}
+    explicit WalkJournal(const MeasureRequest& request)
+        : request_(request), continuation_(request.walks ? *request.walks : WalkContinuation{}) {}
 
     WalkEstimate estimate(const LayerWalk& walk, const kernels::Vec3& wi,
                           std::span<const kernels::Vec3> wo, long samples) {
         const std::size_t index = told_.size();
-        const bool begun = index < request_.walked.size();
-        told_.push_back(begun ? request_.walked[index] : WalkState{});
+        const bool begun = index < continuation_.states.size();
+        told_.push_back(begun ? continuation_.states[index] : WalkState{});
         const WalkState from = told_.back();
         const WalkPause pause = [&](bool is_done, const std::function<WalkState()>& state) {
             if (is_done)
                 told_.back() = state();
-            request_.pause([&] {
+            continuation_.pause([&] {
                 told_.back() = state();
                 return told_;
             });
         };
         return estimate_walk(walk, wi, wo, static_cast<std::uint64_t>(samples), request_.seed,
-                             request_.stop, from, request_.pause ? pause : WalkPause{});
+                             request_.stop, from, continuation_.pause ? pause : WalkPause{});
     }
 
 private:
     const MeasureRequest& request_;
+    WalkContinuation continuation_;
     std::vector<WalkState> told_;
 };
 

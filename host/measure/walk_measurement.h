@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/layers/walk/walk.h"
-#include "host/measure/measure.h"
+#include "reradiant/measure.h"
 
 namespace reradiant {
 

@@ -1,6 +1,6 @@
-#include "host/base/error.h"
-#include "host/base/paths.h"
 #include "host/check/check.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
 #include "tests/full_run.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,8 @@
 // What a device refuses, and that the cause is named before or after it does.
-#include "host/base/error.h"
 #include "host/device/buffer.h"
+#include "host/device/opencl_device.h"
 #include "host/device/program.h"
+#include "reradiant/error.h"
 
 #include <gtest/gtest.h>
 
@@ -88,8 +89,8 @@ TEST(DeviceLimits, Case42RefusedLaunchesNameTheCause) {
          {std::pair<std::size_t, std::size_t>{100, 64}, {1U << 20U, 1U << 20U}}) {
         const std::string text = error_of([&, g = global, l = local] {
             opencl_checked("a launch", [&] {
-                device().queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(g),
-                                                      cl::NDRange(l));
+                device().opencl().queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(g),
+                                                             cl::NDRange(l));
             });
         });
         EXPECT_NE(text.find("a launch failed"), std::string::npos) << text;

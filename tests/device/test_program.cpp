@@ -1,6 +1,6 @@
-#include "host/base/error.h"
-#include "host/base/paths.h"
 #include "host/device/program.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
 
 #include <gtest/gtest.h>
 

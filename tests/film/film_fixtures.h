@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/base/error.h"
-#include "host/film/spectral_image.h"
+#include "reradiant/error.h"
+#include "reradiant/spectral_image.h"
 
 #include <gtest/gtest.h>
 

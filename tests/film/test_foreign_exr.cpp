@@ -9,7 +9,7 @@
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/fit/data/bispectral_data.h"
-#include "host/fit/result/fit.h"
-#include "host/spectral/matrix/reradiation.h"
+#include "reradiant/bispectral_data.h"
+#include "reradiant/fit.h"
+#include "reradiant/reradiation.h"
 
 #include <algorithm>
 #include <cmath>

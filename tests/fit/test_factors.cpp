@@ -1,5 +1,5 @@
-#include "host/base/error.h"
 #include "host/fit/models/factor_model.h"
+#include "reradiant/error.h"
 #include "tests/fit/fit_cases.h"
 #include "tests/full_run.h"
 

@@ -1,5 +1,5 @@
-#include "host/base/error.h"
 #include "host/fit/solver/solve_journal.h"
+#include "reradiant/error.h"
 #include "tests/fit/fit_cases.h"
 
 #include <gtest/gtest.h>

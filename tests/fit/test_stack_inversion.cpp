@@ -1,10 +1,13 @@
-#include "host/base/error.h"
 #include "host/fit/stack/stack_inversion.h"
-#include "host/measure/measure.h"
+#include "host/measure/measure_substrate.h"
+#include "reradiant/error.h"
+#include "reradiant/measure.h"
+#include "reradiant/reradiation.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"
 #include "tests/full_run.h"
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include <numbers>

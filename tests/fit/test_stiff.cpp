@@ -1,4 +1,4 @@
-#include "host/base/error.h"
+#include "reradiant/error.h"
 #include "tests/fit/fit_cases.h"
 
 #include <gtest/gtest.h>

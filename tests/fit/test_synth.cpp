@@ -1,5 +1,6 @@
-#include "host/fit/synth/synth.h"
 #include "host/fit/synth/synth_band.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/synth.h"
 #include "tests/spectral/scratch_folder.h"
 
 #include <Eigen/LU>

@@ -1,5 +1,6 @@
-#include "host/base/error.h"
-#include "host/fit/synth/synth.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/synth.h"
 #include "tests/spectral/scratch_folder.h"
 
 #include <algorithm>

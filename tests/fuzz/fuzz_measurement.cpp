@@ -1,4 +1,4 @@
-#include "host/fit/data/bispectral_data.h"
+#include "reradiant/bispectral_data.h"
 #include "tests/fuzz/fuzz_input.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "tests/kernels/probe.h"
+#include "host/device/opencl_device.h"
 
 #include <algorithm>
 

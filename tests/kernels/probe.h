@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/device/buffer.h"
+#include "host/device/opencl_device.h"
 #include "host/device/program.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
 // The film kernel itself: what it refuses, and that its sums do not stop growing.
+#include "host/device/opencl_device.h"
 #include "kernels/core/shared.h"
 #include "tests/kernels/probe.h"
 

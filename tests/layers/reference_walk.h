@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/layers/stack/stack.h"
 #include "kernels/scatter/microfacet.h"
+#include "reradiant/layer_stack.h"
 
 #include <cmath>
 #include <random>

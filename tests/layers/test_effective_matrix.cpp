@@ -1,5 +1,5 @@
-#include "host/base/error.h"
 #include "host/layers/models/effective_matrix.h"
+#include "reradiant/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Adding in double precision over random stacks: shares stay shares, and light is not made.
-#include "host/layers/models/adding.h"
+#include "reradiant/adding.h"
 #include "tests/full_run.h"
 #include "tests/layers/private_cache.h"
 

@@ -1,6 +1,6 @@
-#include "host/layers/models/adding.h"
 #include "kernels/scatter/fresnel.h"
 #include "kernels/scatter/microfacet.h"
+#include "reradiant/adding.h"
 #include "tests/layers/private_cache.h"
 #include "tests/layers/reference_walk.h"
 

@@ -1,6 +1,6 @@
-#include "host/base/error.h"
 #include "host/layers/angular/scattering_slab.h"
-#include "host/layers/models/adding.h"
+#include "reradiant/adding.h"
+#include "reradiant/error.h"
 #include "tests/layers/private_cache.h"
 #include "tests/layers/reference_walk.h"
 

@@ -1,6 +1,6 @@
-#include "host/base/error.h"
-#include "host/layers/models/adding.h"
 #include "host/layers/smooth/smooth_stack.h"
+#include "reradiant/adding.h"
+#include "reradiant/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "host/layers/stack/stack.h"
 #include "kernels/scatter/microfacet.h"
+#include "reradiant/layer_stack.h"
 
 #include "host/layers/rough/interface_walk.h"
 

@@ -1,4 +1,3 @@
-#include "host/base/error.h"
 #include "host/layers/stack/quadrature.h"
 #include "host/layers/walk/walk_connector.h"
 #include "host/layers/walk/walk_estimate.h"
@@ -6,6 +5,7 @@
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
 #include "kernels/scatter/thin_film.h"
+#include "reradiant/error.h"
 #include "tests/full_run.h"
 #include "tests/layers/private_cache.h"
 #include "tests/layers/walk_stacks.h"

@@ -1,9 +1,9 @@
-#include "host/layers/models/adding.h"
 #include "host/layers/models/weidlich_wilkie.h"
 #include "host/layers/models/weidlich_wilkie_residual.h"
 #include "host/layers/rough/facet_interreflection.h"
 #include "host/layers/rough/facet_reflectance.h"
 #include "host/layers/walk/walk_estimate.h"
+#include "reradiant/adding.h"
 #include "tests/layers/private_cache.h"
 
 #include <gtest/gtest.h>

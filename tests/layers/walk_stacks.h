@@ -1,9 +1,9 @@
 #pragma once
 
-#include "host/layers/models/adding.h"
 #include "host/layers/models/effective_matrix.h"
 #include "host/layers/stack/quadrature.h"
 #include "host/layers/walk/walk_estimate.h"
+#include "reradiant/adding.h"
 
 #include <cmath>
 #include <numbers>

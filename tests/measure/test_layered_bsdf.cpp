@@ -1,13 +1,15 @@
 // The triple eval, sample, pdf of layered materials: chi-square of directions over half vectors,
 // and reflectances found by sampling against those of the goniophotometer.
-#include "host/base/error.h"
 #include "host/measure/layered_bsdf.h"
-#include "host/measure/measure.h"
+#include "host/measure/measure_substrate.h"
 #include "host/measure/surface_angles.h"
+#include "reradiant/error.h"
+#include "reradiant/measure.h"
 #include "tests/full_run.h"
 #include "tests/layers/private_cache.h"
 
-#include <fmt/format.h>
+#include <Eigen/Core>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

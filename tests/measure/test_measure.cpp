@@ -1,5 +1,6 @@
-#include "host/base/error.h"
-#include "host/measure/measure.h"
+#include "host/measure/measure_substrate.h"
+#include "reradiant/error.h"
+#include "reradiant/measure.h"
 
 #include <gtest/gtest.h>
 

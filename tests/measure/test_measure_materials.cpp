@@ -1,12 +1,14 @@
-#include "host/base/error.h"
-#include "host/layers/models/adding.h"
 #include "host/measure/lobe_quadrature.h"
-#include "host/measure/measure.h"
+#include "host/measure/measure_substrate.h"
 #include "host/measure/surface_angles.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
+#include "reradiant/adding.h"
+#include "reradiant/error.h"
+#include "reradiant/measure.h"
 #include "tests/layers/private_cache.h"
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include <cmath>

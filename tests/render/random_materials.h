@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/scene/model/scene.h"
+#include "reradiant/scene.h"
 #include "tests/render/test_scenes.h"
 
 #include <random>

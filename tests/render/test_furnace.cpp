@@ -1,5 +1,5 @@
-#include "host/layers/models/adding.h"
 #include "host/layers/models/effective_matrix.h"
+#include "reradiant/adding.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>

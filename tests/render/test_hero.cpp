@@ -1,4 +1,6 @@
-#include "host/base/error.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/scene_file.h"
 #include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
 

@@ -1,6 +1,8 @@
 // What a scene does not need costs nothing, and edits of numbers build nothing.
+#include "host/device/opencl_device.h"
 #include "host/device/program.h"
 #include "host/render/plan/render_features.h"
+#include "reradiant/reradiation.h"
 #include "tests/full_run.h"
 #include "tests/render/kernel_sizes.h"
 #include "tests/render/test_scenes.h"
@@ -57,7 +59,9 @@ TEST(LeavingOut, EditsOfNumbersBuildNoKernel) {
     scene.lights.back() = RectangleLight{{1, 4, 1}, {1, 0, 0}, {0, 0, 1}, Spectrum::constant(2.0)};
     Material& edited = scene.materials.front();
     edited.stack.layers.front().absorption = Spectrum::constant(0.1);
-    edited.substrate.matrix->values *= 0.5;
+    ReradiationMatrix matrix = *edited.substrate.matrix;
+    matrix.values *= 0.5;
+    edited.substrate.matrix = std::make_shared<const ReradiationMatrix>(matrix);
     edited.substrate.reflectance = edited.substrate.matrix->reflectance();
     const RenderResult result = rendered(scene);
     EXPECT_EQ(result.build.built, 0);
@@ -146,13 +150,13 @@ TEST(BadDevice, NoDoubleIsNeededByAnyKernel) {
     for (const char* file :
          {"kernels/generate.cl", "kernels/shade.cl", "kernels/gather.cl", "kernels/film.cl"}) {
         const std::string source = kernel_source(RERADIANT_SOURCE_DIR, file, features.defines());
-        const cl::Program program(device().context(),
+        const cl::Program program(device().opencl().context,
                                   "#pragma OPENCL EXTENSION cl_khr_fp64 : disable\n" + source);
         try {
             program.compile("-cl-std=CL1.2 -Werror");
         } catch (const cl::Error&) {
             ADD_FAILURE() << file << '\n'
-                          << program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device().handle());
+                          << program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device().opencl().handle);
         }
     }
 }
@@ -165,7 +169,9 @@ TEST(BadDevice, Case38KernelsTakeNoLocalMemory) {
                                      {"kernels/shade.cl", "shade"},
                                      {"kernels/gather.cl", "gather"}}) {
         const Kernel kernel(build_program(device(), file, features.defines()), name, 8);
-        EXPECT_EQ(kernel.handle().getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device().handle()), 0U)
+        EXPECT_EQ(
+            kernel.handle().getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device().opencl().handle),
+            0U)
             << name;
     }
 }

@@ -1,6 +1,6 @@
-#include "host/layers/models/adding.h"
 #include "host/layers/models/effective_matrix.h"
 #include "host/layers/models/weidlich_wilkie.h"
+#include "reradiant/adding.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>

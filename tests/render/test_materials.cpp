@@ -1,8 +1,11 @@
 // Every kind of material: what the renderer shows of it is what `measure` says of it.
-#include "host/measure/measure.h"
+#include "host/measure/measure_substrate.h"
 #include "host/measure/surface_model.h"
+#include "reradiant/measure.h"
+#include "reradiant/reradiation.h"
 #include "tests/render/test_scenes.h"
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-#include "host/base/paths.h"
+#include "reradiant/paths.h"
+#include "reradiant/scene_file.h"
 #include "tests/render/walk_strips.h"
 
 #include <gtest/gtest.h>

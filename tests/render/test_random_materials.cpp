@@ -25,6 +25,7 @@ constexpr std::size_t directions = 64, inputs = 9, outputs = 6;
 /// z (0 for the mirror), its pdf, its length, 1 for the mirror.
 constexpr const char* source = R"(
 #include "kernels/stack/layer_stack.h"
+#include "host/device/opencl_device.h"
 __kernel void triple(__global const float* in, __global float* out, uint count,
                      __global const MaterialRecord* materials, __global const LayerRecord* layers,
                      __global const LobeRecord* lobes, __global const float* tables,

@@ -1,5 +1,5 @@
 // Russian roulette ends paths that bring little, and must not cost more error than time.
-#include "host/film/spectral_image.h"
+#include "reradiant/spectral_image.h"
 #include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
 

@@ -94,7 +94,7 @@ ReradiationMatrix shifted_matrix() {
 Material fluorescent(std::vector<Layer> layers, const ReradiationMatrix& matrix) {
     Material result = material(std::move(layers), 0.0);
     result.substrate.reflectance = matrix.reflectance();
-    result.substrate.matrix = matrix;
+    result.substrate.matrix = std::make_shared<const ReradiationMatrix>(matrix);
     return result;
 }
 

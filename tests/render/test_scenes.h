@@ -1,8 +1,9 @@
 #pragma once
 
-#include "host/device/device.h"
-#include "host/render/wavefront/renderer.h"
-#include "host/scene/model/scene.h"
+#include "reradiant/device.h"
+#include "reradiant/render.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/scene.h"
 
 namespace reradiant::test {
 

@@ -1,6 +1,7 @@
 #include "host/render/tables/scene_tables.h"
 #include "host/spectral/colour/rgb_basis.h"
 #include "kernels/scene/texture.h"
+#include "reradiant/scene_file.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>

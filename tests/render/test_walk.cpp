@@ -1,5 +1,5 @@
-#include "host/base/error.h"
 #include "host/render/tables/scene_tables.h"
+#include "reradiant/error.h"
 #include "tests/render/walk_strips.h"
 
 #include <gtest/gtest.h>

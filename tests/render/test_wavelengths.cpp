@@ -1,7 +1,9 @@
-#include "host/measure/measure.h"
-#include "host/render/plan/wavelength_plan.h"
+#include "reradiant/measure.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/wavelength_plan.h"
 #include "tests/render/test_scenes.h"
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -3,6 +3,7 @@
 #include "tests/scene/scratch.h"
 
 #include "host/scene/mitsuba/mitsuba_import.h"
+#include "reradiant/scene_file.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/base/error.h"
-#include "host/scene/model/scene.h"
+#include "reradiant/error.h"
+#include "reradiant/scene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 #include "host/scene/images/image_io.h"
-#include "host/spectral/colour/colour.h"
+#include "reradiant/colour.h"
+#include "reradiant/scene_file.h"
 #include "tests/scene/scratch.h"
 
 #include <ImfChannelList.h>

@@ -1,6 +1,7 @@
 #include "tests/scene/scratch.h"
 
 #include "host/spectral/matrix/kubelka_munk.h"
+#include "reradiant/scene_file.h"
 
 using namespace reradiant;
 using namespace reradiant::testing;
@@ -49,7 +50,7 @@ TEST_F(Pigments, AThinLayerShowsItsBacking) {
 
 TEST_F(Pigments, ADyeGivesAMatrix) {
     const Substrate glowing = substrate(WHITE + DYE);
-    ASSERT_TRUE(glowing.matrix.has_value());
+    ASSERT_TRUE(glowing.matrix);
     EXPECT_TRUE(glowing.is_fluorescent());
     EXPECT_EQ(glowing.matrix->emission, grid_from_range(300.0, 780.0, 5.0));
     EXPECT_GT(glowing.matrix->values(glowing.matrix->emission.band_of(540.0),
@@ -67,7 +68,7 @@ TEST_F(Pigments, ADyeGivesAMatrix) {
                                            : "quantum_yield = 0.8, concentration = 0.5",
                                        change));
         EXPECT_FALSE(dark.is_fluorescent());
-        EXPECT_FALSE(dark.matrix.has_value());
+        EXPECT_FALSE(dark.matrix);
     }
 }
 

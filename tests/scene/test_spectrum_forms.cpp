@@ -1,6 +1,7 @@
 #include "tests/scene/scratch.h"
 
-#include "host/spectral/colour/colour.h"
+#include "reradiant/colour.h"
+#include "reradiant/scene_file.h"
 
 #include <cmath>
 

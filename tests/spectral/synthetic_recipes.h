@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/matrix/reradiation.h"
+#include "reradiant/reradiation.h"
 
 #include <cmath>
 #include <functional>

@@ -1,8 +1,8 @@
-#include "host/spectral/colour/colour_of_matrix.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/colour_of_matrix.h"
+#include "reradiant/reradiation_file.h"
 #include "tests/spectral/synthetic_recipes.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-#include "host/base/error.h"
 #include "host/spectral/colour/colour_polygons.h"
+#include "reradiant/error.h"
 #include "tests/spectral/scratch_folder.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "host/spectral/spectrum/grid.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <gtest/gtest.h>
 

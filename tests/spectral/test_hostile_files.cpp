@@ -1,5 +1,6 @@
-#include "host/base/error.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/spectrum_file.h"
 #include "tests/spectral/scratch_folder.h"
 
 #include <chrono>

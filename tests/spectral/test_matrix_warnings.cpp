@@ -1,6 +1,7 @@
+#include "host/base/output_ending.h"
 #include "host/spectral/evidence/matrix_evidence.h"
 #include "host/spectral/evidence/matrix_warnings.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/reradiation_file.h"
 #include "tests/spectral/scratch_folder.h"
 
 #include <cmath>

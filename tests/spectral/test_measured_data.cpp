@@ -1,5 +1,5 @@
-#include "host/spectral/colour/colour_of_matrix.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/colour_of_matrix.h"
+#include "reradiant/reradiation_file.h"
 
 #include <gtest/gtest.h>
 

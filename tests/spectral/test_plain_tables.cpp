@@ -1,5 +1,6 @@
 #include "host/spectral/evidence/undeclared_table.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/spectrum_file.h"
 #include "tests/spectral/refusal.h"
 #include "tests/spectral/scratch_folder.h"
 

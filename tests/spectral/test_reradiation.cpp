@@ -1,4 +1,4 @@
-#include "host/spectral/matrix/reradiation.h"
+#include "reradiant/reradiation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "host/spectral/spectrum/spectrum.h"
+#include "reradiant/spectrum.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "host/base/paths.h"
-#include "host/spectral/colour/colour.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/colour.h"
+#include "reradiant/paths.h"
+#include "reradiant/reradiation_file.h"
 #include "tests/spectral/synthetic_recipes.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/base/error.h"
 #include "host/study/study/study_file.h"
+#include "reradiant/error.h"
 
 #include <gtest/gtest.h>
 

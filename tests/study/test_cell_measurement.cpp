@@ -1,6 +1,6 @@
 #include "host/study/study/cell_measurement.h"
 
-#include "host/spectral/colour/colour.h"
+#include "reradiant/colour.h"
 
 #include <gtest/gtest.h>
 

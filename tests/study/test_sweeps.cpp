@@ -1,5 +1,5 @@
-#include "host/spectral/colour/colour.h"
 #include "host/study/study/sweep_apply.h"
+#include "reradiant/colour.h"
 #include "tests/study/study_fixtures.h"
 
 #include <cmath>

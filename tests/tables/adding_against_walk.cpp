@@ -3,7 +3,7 @@
 #include "tests/layers/walk_stacks.h"
 #include "tests/layers/walk_statistics.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

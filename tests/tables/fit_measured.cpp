@@ -4,9 +4,9 @@
 //     table_fit_measured [FOLDER]
 
 #include "host/base/atomic_file.h"
-#include "host/base/error.h"
-#include "host/fit/result/fit.h"
 #include "host/report/svg.h"
+#include "reradiant/error.h"
+#include "reradiant/fit.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // Prints how well `fit` recovers known matrices from synthetic data, as a Markdown table: one line
 // a case (grid, stack, number of fluorophores, noise), the mean of several data sets, since the
 // entries of one are wrong together: its bands may hold 75 or 100 % where 95 % is right on average.
-#include "host/base/error.h"
-#include "host/fit/result/fit.h"
+#include "reradiant/error.h"
+#include "reradiant/fit.h"
 #include "tests/tables/recovery_cases.h"
 
 #include <CLI/CLI.hpp>

@@ -4,14 +4,15 @@
 // files; none: those of tools/examples. Exits with 3 when two images of a scene differ by more than
 // three standard errors of their tile means (Sidak). A second table has the price of every feature
 // alone: the reference study, which needs few, with one more at a time.
-#include "host/device/device.h"
 #include "host/render/plan/render_features.h"
-#include "host/render/wavefront/renderer.h"
-#include "host/scene/model/scene.h"
+#include "reradiant/device.h"
+#include "reradiant/render.h"
+#include "reradiant/scene.h"
+#include "reradiant/scene_file.h"
 #include "tests/layers/walk_statistics.h"
 #include "tests/tables/built_kernels.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

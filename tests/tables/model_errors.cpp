@@ -1,11 +1,12 @@
 // Every preset by the three models, as Markdown tables: how far weidlich-wilkie and adding are from
 // the random walk in albedo and in the BRRDF, and how much energy each sends back. Arguments: names
 // of presets; none: all of them.
-#include "host/base/paths.h"
-#include "host/measure/measure.h"
+#include "reradiant/measure.h"
+#include "reradiant/paths.h"
+#include "reradiant/scene_file.h"
 #include "tests/layers/walk_statistics.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

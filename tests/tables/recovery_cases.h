@@ -1,6 +1,7 @@
 #pragma once
 
-#include "host/fit/synth/synth.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/synth.h"
 
 namespace reradiant {
 

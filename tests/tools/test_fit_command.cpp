@@ -1,6 +1,6 @@
 #include "tests/tools/program_runner.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>

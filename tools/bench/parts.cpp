@@ -1,9 +1,9 @@
 // Google Benchmark: how a render's time grows with bands, rank of re-radiation, layers, depth,
 // pixels, lights and triangles. Each is a small render of one study with one number changed; the
 // counters are what was done in a second of the render proper, and what was needed before it.
-#include "host/device/device.h"
-#include "host/render/wavefront/renderer.h"
-#include "host/scene/model/scene.h"
+#include "reradiant/device.h"
+#include "reradiant/render.h"
+#include "reradiant/scene.h"
 
 #include <benchmark/benchmark.h>
 

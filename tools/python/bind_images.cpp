@@ -1,6 +1,6 @@
 #include "host/base/output_ending.h"
 #include "host/base/output_file.h"
-#include "host/film/spectral_image.h"
+#include "reradiant/spectral_image.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
 #include "tools/python/values.h"

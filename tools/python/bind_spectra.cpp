@@ -1,8 +1,9 @@
 #include "host/report/svg.h"
-#include "host/spectral/colour/colour.h"
-#include "host/spectral/files/matrix_io.h"
-#include "host/spectral/spectrum/spectrum.h"
 #include "host/spectral/text/wavelength_unit.h"
+#include "reradiant/colour.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/spectrum.h"
+#include "reradiant/spectrum_file.h"
 #include "tools/python/bindings.h"
 #include "tools/python/values.h"
 

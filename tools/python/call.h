@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/base/interruption.h"
+#include "reradiant/interruption.h"
 
 #include <pybind11/pybind11.h>
 

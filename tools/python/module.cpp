@@ -1,5 +1,5 @@
-#include "host/base/error.h"
-#include "host/scene/model/scene.h"
+#include "reradiant/error.h"
+#include "reradiant/scene.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
 

@@ -1,14 +1,17 @@
-#include "host/fit/data/bispectral_data.h"
+#include "reradiant/bispectral_data.h"
 
+#include "host/base/output_ending.h"
 #include "host/fit/data/measurement_reader.h"
-#include "host/measure/measure.h"
 #include "host/spectral/evidence/matrix_warnings.h"
 #include "host/spectral/evidence/plausible_matrix.h"
-#include "host/spectral/files/matrix_io.h"
 #include "host/spectral/text/csv_lines.h"
 #include "host/spectral/text/text_reader.h"
+#include "reradiant/measure.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/reradiation_file.h"
 
-#include <fmt/format.h>
+#include <Eigen/Core>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <limits>

@@ -1,8 +1,8 @@
 #include "host/fit/data/fit_mask.h"
 
-#include "host/base/error.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <limits>

@@ -1,26 +1,10 @@
 #pragma once
 
-#include "host/fit/data/bispectral_data.h"
-#include "host/fit/data/mask_rules.h"
-#include "host/spectral/evidence/scatter_detection.h"
-
-#include <Eigen/Core>
-
-#include <string>
-#include <vector>
+#include "host/spectral/evidence/scatter_contrast.h"
+#include "reradiant/bispectral_data.h"
+#include "reradiant/fit_mask.h"
 
 namespace reradiant {
-
-/// Entries of measured data that a fit takes as missing, and why.
-struct FitMask {
-    MaskRules rules;                 ///< as applied: lines that were found stand among the others
-    std::vector<FoundScatter> found; ///< those that stood out by themselves
-    Eigen::MatrixXd entries;         ///< 1: masked, else 0, (emission, excitation); empty: none is
-    int measured = 0;                ///< masked entries that some block measured
-    std::vector<std::string> notes, warnings;
-
-    bool any() const { return measured > 0; }
-};
 
 /// What some rules mask of data. Lines are looked for in every block; what stands out of one is
 /// masked in all. A line that the rules name has the width that they say. A rule that no measured

@@ -1,7 +1,7 @@
-#include "host/fit/data/mask_rules.h"
+#include "reradiant/fit_mask.h"
 
-#include "host/base/error.h"
 #include "host/spectral/text/text_reader.h"
+#include "reradiant/error.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

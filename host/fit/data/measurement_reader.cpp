@@ -4,7 +4,7 @@
 #include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/text/text_reader.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/fit/data/bispectral_data.h"
+#include "reradiant/bispectral_data.h"
 
 namespace reradiant {
 

@@ -1,4 +1,4 @@
-#include "host/fit/data/model_file.h"
+#include "reradiant/fit.h"
 
 #include "host/base/atomic_file.h"
 

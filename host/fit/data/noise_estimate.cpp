@@ -2,7 +2,7 @@
 
 #include "host/fit/data/rounding_steps.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "host/fit/data/noise_estimate.h"
 #include "host/fit/data/rounding_steps.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/fit/data/bispectral_data.h"
 #include "host/fit/data/fit_target.h"
 #include "host/fit/result/shared_errors.h"
+#include "reradiant/bispectral_data.h"
 
 #include <optional>
 #include <string>

@@ -1,12 +1,12 @@
 #include "host/fit/models/factor_fit.h"
 
-#include "host/base/error.h"
 #include "host/fit/models/at_once.h"
 #include "host/fit/models/hidden_bands.h"
 #include "host/fit/models/knot_choice.h"
 #include "host/fit/solver/solve_journal.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include "host/fit/models/factor_model.h"
 #include "host/fit/models/model_selection.h"
-#include "host/fit/result/fit.h"
 #include "host/fit/solver/budget_solver.h"
+#include "reradiant/fit.h"
 
 #include <chrono>
 #include <memory>

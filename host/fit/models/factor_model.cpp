@@ -1,7 +1,7 @@
 #include "host/fit/models/factor_model.h"
 
 #include "host/fit/models/knot_choice.h"
-#include "host/fit/result/fit.h"
+#include "reradiant/fit.h"
 
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>

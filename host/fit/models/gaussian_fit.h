@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/fit/models/model_selection.h"
-#include "host/fit/result/fit.h"
+#include "reradiant/fit.h"
 
 #include <chrono>
 

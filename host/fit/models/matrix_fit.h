@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/fit/result/fit.h"
 #include "host/fit/result/quantum_yield.h"
 #include "host/fit/solver/budget_solver.h"
+#include "reradiant/fit.h"
 
 #include <chrono>
 #include <cstddef>

@@ -1,5 +1,7 @@
 #include "host/fit/result/error_bands.h"
 
+#include "host/fit/solver/robust_loss.h"
+
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <ceres/loss_function.h>

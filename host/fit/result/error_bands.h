@@ -1,9 +1,9 @@
 #pragma once
 
-#include "host/fit/result/fit.h"
 #include "host/fit/result/quantum_yield.h"
 #include "host/fit/result/shared_errors.h"
 #include "host/fit/solver/budget_solver.h"
+#include "reradiant/fit.h"
 
 #include <Eigen/Core>
 

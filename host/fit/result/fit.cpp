@@ -1,14 +1,16 @@
-#include "host/fit/result/fit.h"
+#include "reradiant/fit.h"
 
-#include "host/base/error.h"
+#include "host/fit/data/fit_mask.h"
 #include "host/fit/data/prepared_target.h"
 #include "host/fit/models/factor_fit.h"
 #include "host/fit/models/gaussian_fit.h"
 #include "host/fit/models/matrix_fit.h"
 #include "host/fit/result/error_bands.h"
 #include "host/fit/result/fit_checks.h"
+#include "host/fit/stack/stack_inversion.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "host/fit/models/model_selection.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

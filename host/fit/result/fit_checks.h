@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/fit/data/prepared_target.h"
-#include "host/fit/result/fit.h"
+#include "reradiant/fit.h"
 
 namespace reradiant {
 

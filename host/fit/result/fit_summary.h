@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/fit/result/fit.h"
+#include "reradiant/fit.h"
 
 #include <nlohmann/json.hpp>
 

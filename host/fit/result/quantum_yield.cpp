@@ -1,6 +1,6 @@
 #include "host/fit/result/quantum_yield.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <limits>

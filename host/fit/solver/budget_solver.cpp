@@ -1,5 +1,7 @@
 #include "host/fit/solver/budget_solver.h"
 
+#include "host/fit/solver/non_negative_solver.h"
+
 #include <algorithm>
 
 namespace reradiant {

@@ -4,7 +4,7 @@
 #include "host/fit/solver/linearisation.h"
 #include "host/fit/solver/solve_journal.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,11 @@
 #pragma once
 
-#include "host/base/interruption.h"
+#include "reradiant/fit.h"
 
 #include <Eigen/Core>
 
 #include <chrono>
 #include <cstddef>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,8 +14,6 @@ class Problem;
 }
 
 namespace reradiant {
-
-class SolveJournal;
 
 /// How the linear systems of a step are solved.
 struct LinearAlgebra {
@@ -35,27 +32,6 @@ public:
     virtual LinearAlgebra linear_algebra() const { return {}; }
     /// Blocks in which the residuals are affine while the others stay: first, and how many.
     virtual std::pair<std::size_t, std::size_t> affine_blocks() const { return {0, 0}; }
-};
-
-struct SolverSettings {
-    int most_iterations = 400;
-    double kkt_tolerance = 1e-8;
-    double most_seconds = 60.0;
-    StopFlag stop = nullptr;         ///< asked before every step
-    SolveJournal* journal = nullptr; ///< keeps every step, and has those of an earlier run
-};
-
-/// How a minimisation went.
-struct SolveTrace {
-    std::vector<double> cost, seconds; ///< after every step; seconds since `start`
-    int iterations = 0;
-    double kkt = 0.0; ///< see kkt_violation
-    bool converged = false;
-    std::string stop_reason;
-
-    /// Steps that went on from the end of these.
-    void append(const SolveTrace& more);
-    double final_cost() const { return cost.empty() ? 0.0 : cost.back(); }
 };
 
 /// Largest move that a projected step along a single parameter (of its Gauss-Newton length) would

@@ -1,9 +1,9 @@
 #include "host/fit/solver/robust_loss.h"
 
-#include "host/base/error.h"
+#include "reradiant/error.h"
 
 #include <ceres/loss_function.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

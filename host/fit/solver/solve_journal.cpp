@@ -1,7 +1,7 @@
 #include "host/fit/solver/solve_journal.h"
 
-#include "host/base/error.h"
 #include "host/base/json_numbers.h"
+#include "reradiant/error.h"
 
 #include <algorithm>
 #include <cmath>

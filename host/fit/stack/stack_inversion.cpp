@@ -1,12 +1,12 @@
 #include "host/fit/stack/stack_inversion.h"
 
-#include "host/base/error.h"
 #include "host/fit/data/fit_target.h"
 #include "host/fit/data/noise_estimate.h"
 #include "host/fit/stack/stack_response.h"
 #include "host/fit/stack/unknown_stack.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <charconv>
 #include <cmath>

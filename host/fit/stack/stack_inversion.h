@@ -1,38 +1,15 @@
 #pragma once
 
-#include "host/fit/data/bispectral_data.h"
 #include "host/fit/result/shared_errors.h"
-#include "host/layers/stack/stack.h"
-
-#include <Eigen/Core>
+#include "reradiant/bispectral_data.h"
+#include "reradiant/fit.h"
+#include "reradiant/layer_stack.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace reradiant {
-
-/// What is not known about the stack above a sample.
-struct UnknownLayers {
-    bool thickness = false;  ///< of every layer that absorbs, one factor each
-    bool absorption = false; ///< the scale of every layer's absorption, one factor each
-    bool ior = false;        ///< of every layer, one addend each
-
-    bool any() const { return thickness || absorption || ior; }
-};
-/// A list like `thickness,ior`; input Error for another name.
-UnknownLayers unknown_layers_from_names(const std::vector<std::string>& names);
-
-/// What the data say about the unknown numbers of a stack.
-struct StackEstimate {
-    std::vector<std::string> names; ///< "thickness of layer 1", ...
-    Eigen::VectorXd value, sigma;   ///< sigma infinite: the data do not determine it
-    Eigen::MatrixXd correlation;    ///< of the numbers; NaN where undetermined
-    int rank = 0;                   ///< numbers that the data tell apart
-    double reduced_chi_squared = 0.0;
-    /// One sentence a group of numbers that the data cannot tell apart; empty when all are.
-    std::vector<std::string> ambiguities;
-};
 
 /// Data of a sample under a stack turned into those of the bare substrate.
 struct SubstrateData {

@@ -1,10 +1,10 @@
 #include "host/fit/stack/stack_response.h"
 
-#include "host/base/error.h"
-#include "host/layers/models/adding.h"
+#include "reradiant/adding.h"
+#include "reradiant/error.h"
 
 #include <Eigen/LU>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

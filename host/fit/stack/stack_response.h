@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/fit/data/bispectral_data.h"
 #include "host/fit/result/shared_errors.h"
-#include "host/layers/stack/stack.h"
+#include "reradiant/bispectral_data.h"
+#include "reradiant/layer_stack.h"
 
 #include <Eigen/Core>
 

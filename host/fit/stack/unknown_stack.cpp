@@ -1,7 +1,7 @@
 #include "host/fit/stack/unknown_stack.h"
 
-#include "host/base/error.h"
 #include "host/fit/stack/stack_response.h"
+#include "reradiant/error.h"
 
 #include <Eigen/SVD>
 #include <ceres/crs_matrix.h>

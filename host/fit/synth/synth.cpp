@@ -1,4 +1,4 @@
-#include "host/fit/synth/synth.h"
+#include "reradiant/synth.h"
 
 #include <cmath>
 #include <random>

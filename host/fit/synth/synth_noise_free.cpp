@@ -1,7 +1,10 @@
-#include "host/fit/synth/synth.h"
-#include "host/measure/measure.h"
+#include "host/measure/measure_substrate.h"
+#include "reradiant/measure.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/synth.h"
 
-#include <fmt/format.h>
+#include <Eigen/Core>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

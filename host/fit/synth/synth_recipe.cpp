@@ -5,7 +5,7 @@
 #include "host/scene/toml/spectrum_reader.h"
 #include "host/scene/toml/stack_reader.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <stdexcept>

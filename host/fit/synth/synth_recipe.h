@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/fit/synth/synth.h"
+#include "reradiant/synth.h"
 
 #include <toml++/toml.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/layers/angular/angular_piles.h"
-#include "host/layers/stack/stack.h"
+#include "reradiant/layer_stack.h"
 
 #include <Eigen/Core>
 

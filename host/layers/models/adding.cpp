@@ -1,10 +1,10 @@
-#include "host/layers/models/adding.h"
+#include "reradiant/adding.h"
 
-#include "host/base/error.h"
 #include "host/layers/angular/angular_system.h"
 #include "host/layers/angular/angular_transport.h"
 #include "host/layers/smooth/smooth_transport.h"
 #include "host/layers/stack/stack_check.h"
+#include "reradiant/error.h"
 
 #include <deque>
 #include <mutex>

@@ -1,10 +1,10 @@
 #include "host/layers/models/effective_matrix.h"
 
-#include "host/base/error.h"
+#include "reradiant/error.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/layers/rough/specular_lobes.h"
-#include "host/layers/stack/stack.h"
+#include "reradiant/layer_stack.h"
 
 namespace reradiant {
 

@@ -1,7 +1,6 @@
+#include "host/base/logging.h"
 #include "host/layers/rough/interface_file.h"
 #include "host/layers/rough/interface_operator.h"
-
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <map>
@@ -26,7 +25,7 @@ void keep(const InterfaceOperator& op, const std::filesystem::path& file, long e
     try {
         write_interface_file(file, op, eta_1e4);
     } catch (const std::exception& error) {
-        spdlog::debug("interface cache not written: {}", error.what());
+        logging::debug("interface cache not written: {}", error.what());
     }
 }
 

@@ -1,12 +1,12 @@
 #include "host/layers/rough/interface_file.h"
 
 #include "host/base/atomic_file.h"
-#include "host/base/error.h"
-#include "host/base/paths.h"
+#include "host/base/logging.h"
 #include "host/base/regular_file.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <cstdint>
@@ -88,7 +88,7 @@ std::optional<InterfaceOperator> read_interface_file(const std::filesystem::path
     const bool whole = in.good() && in.peek() == std::ifstream::traits_type::eof();
     const Header expected = header_of(interface, eta_1e4, checksum_of(numbers));
     if (!whole || std::memcmp(&header, &expected, sizeof header) != 0) {
-        spdlog::warn("{}: damaged cache file; it is computed again", file.string());
+        logging::warn("{}: damaged cache file; it is computed again", file.string());
         return std::nullopt;
     }
     InterfaceOperator op = empty_interface_operator(interface);

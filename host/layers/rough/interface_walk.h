@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/layers/stack/stack.h"
 #include "kernels/core/portable.h"
+#include "reradiant/layer_stack.h"
 
 #include <array>
 #include <vector>

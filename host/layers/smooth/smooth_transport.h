@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/layers/models/adding.h"
+#include "reradiant/adding.h"
 
 #include <memory>
 

@@ -1,8 +1,8 @@
 #include "host/layers/stack/stack_check.h"
 
-#include "host/base/error.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/layers/stack/stack.h"
+#include "reradiant/layer_stack.h"
 
 namespace reradiant {
 

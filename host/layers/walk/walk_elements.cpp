@@ -1,9 +1,9 @@
 #include "host/layers/walk/walk_elements.h"
 
-#include "host/base/error.h"
 #include "host/layers/stack/stack_check.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 

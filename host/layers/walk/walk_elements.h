@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/layers/stack/stack.h"
 #include "host/layers/stack/substrate_values.h"
 #include "host/layers/walk/walk_surface.h"
+#include "reradiant/layer_stack.h"
 
 #include <Eigen/Core>
 

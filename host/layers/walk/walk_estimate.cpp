@@ -1,6 +1,6 @@
 #include "host/layers/walk/walk_estimate.h"
 
-#include "host/base/error.h"
+#include "reradiant/error.h"
 
 #include <tbb/parallel_for.h>
 

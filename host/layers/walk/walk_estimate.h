@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/base/interruption.h"
 #include "host/layers/walk/walk.h"
+#include "reradiant/interruption.h"
 
 #include <cstdint>
 #include <functional>

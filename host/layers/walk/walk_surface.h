@@ -1,9 +1,9 @@
 #pragma once
 
 #include "host/layers/rough/lost_flux.h"
-#include "host/layers/stack/stack.h"
 #include "host/layers/walk/walk_random.h"
 #include "kernels/core/portable.h"
+#include "reradiant/layer_stack.h"
 
 #include <memory>
 #include <span>

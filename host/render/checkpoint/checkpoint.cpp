@@ -1,12 +1,12 @@
 #include "host/render/checkpoint/checkpoint.h"
 
 #include "host/base/atomic_file.h"
-#include "host/base/error.h"
 #include "host/base/json_numbers.h"
 #include "host/base/regular_file.h"
 #include "host/scene/model/sha256.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

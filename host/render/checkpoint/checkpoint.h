@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/film/merge.h"
 #include "host/render/film/film_sums.h"
-#include "host/render/wavefront/renderer.h"
+#include "reradiant/merge.h"
+#include "reradiant/render.h"
 
 #include <cstdint>
 #include <filesystem>

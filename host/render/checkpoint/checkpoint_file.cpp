@@ -1,9 +1,8 @@
 #include "host/render/checkpoint/checkpoint_file.h"
 
-#include "host/base/error.h"
+#include "host/base/logging.h"
 #include "host/render/checkpoint/render_identity.h"
-
-#include <spdlog/spdlog.h>
+#include "reradiant/error.h"
 
 #include <algorithm>
 
@@ -35,7 +34,7 @@ RenderProgress CheckpointFile::resume(Wavefront& wavefront, RenderResult& result
     } catch (const Error& error) {
         if (!options_.restart_if_other)
             throw;
-        spdlog::warn("{}; this render begins anew", error.what());
+        logging::warn("{}; this render begins anew", error.what());
         return {};
     }
     wavefront.film().restore(kept.sums, kept.statistics);
@@ -62,7 +61,7 @@ void CheckpointFile::after_pass(const Wavefront& wavefront, const RenderResult& 
         // A full disk costs the checkpoint, not the render; an interrupted one has no more.
         if (result.interrupted)
             throw;
-        spdlog::warn("{}; the render goes on without", error.what());
+        logging::warn("{}; the render goes on without", error.what());
     }
     written_ = Clock::now();
     write_seconds_ = seconds_since(start);

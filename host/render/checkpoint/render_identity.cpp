@@ -1,9 +1,9 @@
 #include "host/render/checkpoint/render_identity.h"
 
-#include "host/base/paths.h"
 #include "host/scene/model/sha256.h"
+#include "reradiant/paths.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <fstream>

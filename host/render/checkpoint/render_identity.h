@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/device/device.h"
-#include "host/film/merge.h"
-#include "host/render/wavefront/renderer.h"
+#include "reradiant/device.h"
+#include "reradiant/merge.h"
+#include "reradiant/render.h"
 
 #include <string>
 

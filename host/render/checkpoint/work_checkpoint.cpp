@@ -1,9 +1,9 @@
 #include "host/render/checkpoint/work_checkpoint.h"
 
 #include "host/base/atomic_file.h"
-#include "host/base/error.h"
 #include "host/base/regular_file.h"
 #include "host/scene/model/sha256.h"
+#include "reradiant/error.h"
 
 #include <string>
 #include <string_view>

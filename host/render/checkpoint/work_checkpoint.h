@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/film/merge.h"
+#include "reradiant/merge.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,7 @@
 #include "host/render/film/device_film.h"
 
-#include "host/base/error.h"
+#include "host/device/opencl_device.h"
+#include "reradiant/error.h"
 
 #include <algorithm>
 #include <deque>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "host/device/buffer.h"
-#include "host/device/device.h"
 #include "host/render/film/film_sums.h"
+#include "reradiant/device.h"
 
 #include <cstddef>
 #include <cstdint>

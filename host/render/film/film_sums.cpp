@@ -2,8 +2,8 @@
 
 #include "host/render/film/film_pixels.h"
 #include "host/render/film/film_variance.h"
-#include "host/spectral/colour/colour.h"
 #include "kernels/core/features.h"
+#include "reradiant/colour.h"
 
 #include <algorithm>
 #include <bit>

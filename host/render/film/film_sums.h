@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/film/spectral_image.h"
-#include "host/render/plan/wavelength_plan.h"
 #include "kernels/core/shared.h"
+#include "reradiant/spectral_image.h"
+#include "reradiant/wavelength_plan.h"
 
 #include <cstdint>
 #include <limits>

@@ -1,7 +1,7 @@
 #include "host/render/film/render_statistics.h"
 
-#include "host/film/merge.h"
 #include "host/render/checkpoint/render_identity.h"
+#include "reradiant/merge.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/device/device.h"
-#include "host/render/wavefront/renderer.h"
+#include "reradiant/device.h"
+#include "reradiant/render.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 #include "host/render/plan/render_features.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <stdexcept>
 

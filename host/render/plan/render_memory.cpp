@@ -1,6 +1,5 @@
 #include "host/render/plan/render_memory.h"
 
-#include "host/base/error.h"
 #include "host/base/memory_limit.h"
 #include "host/render/film/film_sums.h"
 #include "host/render/tables/hero_tables.h"
@@ -8,8 +7,9 @@
 #include "host/render/tables/stack_optics.h"
 #include "host/render/wavefront/wavefront.h"
 #include "host/scene/model/model_choice.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/render/wavefront/renderer.h"
+#include "reradiant/render.h"
 
 namespace reradiant {
 

@@ -1,8 +1,11 @@
-#include "host/render/plan/wavelength_plan.h"
+#include "reradiant/wavelength_plan.h"
 
+#include "host/scene/model/substrate.h"
 #include "kernels/core/features.h"
+#include "reradiant/reradiation.h"
 
-#include <fmt/format.h>
+#include <Eigen/Core>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +49,7 @@ std::vector<bool> active_cells(const Scene& scene, const WavelengthGrid& cells) 
     std::vector<Eigen::MatrixXd> matrices;
     for (const Material& material : scene.materials)
         if (material.substrate.is_fluorescent())
-            matrices.push_back(material.substrate.fluorescence_on(cells));
+            matrices.push_back(fluorescence_of(material.substrate, cells));
     for (bool changed = true; changed;) {
         changed = false;
         for (const Eigen::MatrixXd& matrix : matrices)

@@ -1,6 +1,6 @@
 #include "host/render/plan/wavelength_text.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <charconv>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/render/plan/wavelength_plan.h"
+#include "reradiant/wavelength_plan.h"
 
 #include <string>
 

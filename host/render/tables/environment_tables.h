@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/scene/model/scene.h"
 #include "kernels/core/shared.h"
+#include "reradiant/scene.h"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 #include "host/render/tables/hero_tables.h"
 
-#include "host/base/error.h"
 #include "kernels/core/features.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

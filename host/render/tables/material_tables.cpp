@@ -3,7 +3,7 @@
 #include "host/render/tables/stack_parts.h"
 #include "host/render/tables/substrate_tables.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

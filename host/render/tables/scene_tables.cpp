@@ -6,7 +6,7 @@
 #include "host/scene/model/model_choice.h"
 #include "kernels/core/features.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "host/render/plan/render_features.h"
-#include "host/render/plan/wavelength_plan.h"
 #include "host/scene/model/model_choice.h"
 #include "kernels/core/shared.h"
+#include "reradiant/wavelength_plan.h"
 
 #include <string>
 #include <vector>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/layers/models/adding.h"
 #include "host/render/tables/lane_tables.h"
-#include "host/scene/model/scene.h"
+#include "reradiant/adding.h"
+#include "reradiant/scene.h"
 
 #include <memory>
 #include <vector>

@@ -1,8 +1,9 @@
 #include "host/render/tables/substrate_operator.h"
 
 #include "host/layers/models/effective_matrix.h"
-#include "host/spectral/matrix/reradiation.h"
+#include "host/scene/model/substrate.h"
 #include "host/spectral/matrix/singular_values.h"
+#include "reradiant/reradiation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -122,7 +123,7 @@ SubstrateOnCells substrate_on_cells(const Substrate& substrate, const Wavelength
     SubstrateOnCells on_cells;
     if (!substrate.is_fluorescent())
         return on_cells;
-    on_cells.fluorescence = substrate.fluorescence_on(cells);
+    on_cells.fluorescence = fluorescence_of(substrate, cells);
     if (has_upper_triangle(on_cells.fluorescence))
         return on_cells; // anti-Stokes emission: the masked form cannot hold it
     const MaskedFactors factors = find_factors(substrate, cells, on_cells.fluorescence);

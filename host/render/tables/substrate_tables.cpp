@@ -3,7 +3,7 @@
 #include "host/spectral/colour/rgb_basis.h"
 #include "kernels/scatter/oren_nayar.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 namespace reradiant {

@@ -1,12 +1,12 @@
 #include "host/render/tables/walk_tables.h"
 
-#include "host/base/error.h"
 #include "host/layers/rough/facet_reflectance.h"
 #include "host/layers/walk/walk_surface.h"
 #include "host/render/tables/substrate_tables.h"
 #include "host/scene/model/model_choice.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 #include "host/render/wavefront/rendering.h"
 
+#include "host/device/opencl_device.h"
 #include "host/render/film/error_estimate.h"
 #include "host/render/film/film_sums.h"
 #include "host/render/plan/render_memory.h"
@@ -52,7 +53,7 @@ WavefrontSettings wavefront_settings(const Scene& scene, const RenderOptions& op
             options.threads,
             sequence_blocks(options),
             options.adaptive,
-            options.on_rays};
+            options.hooks ? options.hooks->on_rays : RaySink{}};
 }
 
 FilmLayout film_of(const WavelengthPlan& plan, const SceneTables& tables,

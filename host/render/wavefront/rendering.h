@@ -3,8 +3,8 @@
 #include "host/geometry/geometry.h"
 #include "host/render/checkpoint/checkpoint_file.h"
 #include "host/render/tables/scene_tables.h"
-#include "host/render/wavefront/renderer.h"
 #include "host/render/wavefront/wavefront.h"
+#include "reradiant/render.h"
 
 #include <chrono>
 #include <functional>

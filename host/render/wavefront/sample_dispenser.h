@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/base/team.h"
-#include "host/render/wavefront/renderer.h"
+#include "reradiant/render.h"
 
 #include <atomic>
 #include <chrono>

@@ -1,12 +1,12 @@
 #include "host/render/wavefront/team_render.h"
 
-#include "host/base/error.h"
 #include "host/render/checkpoint/render_identity.h"
 #include "host/render/film/team_film.h"
 #include "host/render/wavefront/rendering.h"
 #include "host/render/wavefront/sample_dispenser.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

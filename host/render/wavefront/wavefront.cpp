@@ -1,8 +1,8 @@
 #include "host/render/wavefront/wavefront.h"
 
-#include "host/base/error.h"
 #include "host/render/tables/hero_tables.h"
 #include "kernels/core/features.h"
+#include "reradiant/error.h"
 
 #include <algorithm>
 #include <chrono>
@@ -82,7 +82,7 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Scene
         film_weights_ = {device, std::span<const float>(film_layout_.lane_weights)};
         y_weights_ = {device, std::span<const float>(film_layout_.y_weights)};
         film_ = {device, film_layout_, pixel_count_};
-        device_.queue().finish();
+        device_.opencl().queue.finish();
     });
 }
 
@@ -292,7 +292,7 @@ void Wavefront::launch(const Kernel& kernel, std::size_t items, double& stage_se
 /// Waits for what was queued. The host waits before it traces rays only, so that the kernels that
 /// end a batch and begin the next follow each other.
 void Wavefront::finish_kernels() {
-    device_.queue().finish();
+    device_.opencl().queue.finish();
     for (const auto& [event, seconds] : launched_)
         *seconds +=
             1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -

@@ -1,13 +1,14 @@
 #pragma once
 
 #include "host/device/buffer.h"
-#include "host/device/device.h"
+#include "host/device/opencl_device.h"
 #include "host/device/program.h"
 #include "host/geometry/geometry.h"
 #include "host/render/film/device_film.h"
 #include "host/render/film/film_sums.h"
 #include "host/render/tables/scene_tables.h"
-#include "host/render/wavefront/ray_sink.h"
+#include "host/render/wavefront/render_hooks.h"
+#include "reradiant/device.h"
 
 #include <cstddef>
 #include <cstdint>

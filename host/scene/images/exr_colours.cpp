@@ -1,6 +1,6 @@
 #include "host/scene/images/exr_colours.h"
 
-#include "host/spectral/colour/colour.h"
+#include "reradiant/colour.h"
 
 #include <ImfChannelList.h>
 #include <ImfChromaticities.h>
@@ -11,7 +11,7 @@
 #include <exception>
 #include <optional>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

@@ -1,3 +1,4 @@
+#include "host/base/logging.h"
 #include "host/scene/meshes/mesh_io.h"
 #include "host/scene/meshes/obj_text.h"
 
@@ -8,8 +9,7 @@
 #include <span>
 #include <unordered_map>
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 
@@ -179,8 +179,8 @@ void ObjReader::read_other(std::string_view keyword) {
     if (warned_ || is_one_of(keyword, left_out))
         return;
     warned_ = true;
-    spdlog::warn("{}: \"{}\" is no statement of an OBJ file; it is left out, as others like it",
-                 text_.position().text(), keyword.substr(0, 40));
+    logging::warn("{}: \"{}\" is no statement of an OBJ file; it is left out, as others like it",
+                  text_.position().text(), keyword.substr(0, 40));
 }
 
 void ObjReader::read_statement() {

@@ -1,11 +1,11 @@
 #include "host/scene/meshes/ply_header.h"
 
-#include "host/base/error.h"
+#include "reradiant/error.h"
 
 #include <charconv>
 #include <sstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

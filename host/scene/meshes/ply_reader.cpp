@@ -1,3 +1,4 @@
+#include "host/base/logging.h"
 #include "host/scene/meshes/mesh_io.h"
 #include "host/scene/meshes/ply_header.h"
 #include "host/scene/meshes/ply_values.h"
@@ -9,8 +10,7 @@
 #include <limits>
 #include <optional>
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 
@@ -201,9 +201,10 @@ void PlyReader::apply_wedges(std::uint64_t face) {
 
 void PlyReader::note_texture(double number) {
     if (texture_number_ && *texture_number_ != number && !warned_of_textures_) {
-        spdlog::warn("{}: the faces lie in several images (texnumber); one texture is used for all "
-                     "of them",
-                     file_);
+        logging::warn(
+            "{}: the faces lie in several images (texnumber); one texture is used for all "
+            "of them",
+            file_);
         warned_of_textures_ = true;
     }
     texture_number_ = number;
@@ -262,8 +263,8 @@ void PlyReader::read_faces(const PlyElement& element) {
 /// A count in the header that is too small would leave faces out without a word.
 void PlyReader::warn_of_rest() {
     if (values_.has_more())
-        spdlog::warn("{}: more follows after the last element{}; it is left out",
-                     values_.position().text(), values_.byte_text());
+        logging::warn("{}: more follows after the last element{}; it is left out",
+                      values_.position().text(), values_.byte_text());
 }
 
 MeshShape PlyReader::read() {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/base/error.h"
 #include "host/scene/meshes/ply_header.h"
+#include "reradiant/error.h"
 
 #include <cstdint>
 #include <cstring>
@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

@@ -3,7 +3,7 @@
 #include "host/base/plain_text.h"
 #include "host/scene/toml/load_state.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <charconv>

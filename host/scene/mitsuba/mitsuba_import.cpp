@@ -1,10 +1,10 @@
 #include "host/scene/mitsuba/mitsuba_import.h"
 
+#include "host/base/logging.h"
 #include "host/scene/mitsuba/mitsuba_scene.h"
 #include "host/scene/toml/toml_document.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -100,8 +100,8 @@ void warn_of_unused_bsdfs(const MitsubaScene& scene) {
     for (const pugi::xml_node& bsdf : scene.document().scene().children("bsdf"))
         if (scene.material_names.count(bsdf.offset_debug()) == 0 &&
             scene.nested_bsdfs.count(bsdf.offset_debug()) == 0)
-            spdlog::warn("{}: the bsdf is left out: no shape refers to it",
-                         scene.document().position(bsdf).text());
+            logging::warn("{}: the bsdf is left out: no shape refers to it",
+                          scene.document().position(bsdf).text());
 }
 
 } // namespace

@@ -1,8 +1,9 @@
 #include "host/scene/mitsuba/mitsuba_scene.h"
 
+#include "host/base/logging.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
@@ -114,9 +115,9 @@ toml::table plastic(const MitsubaObject& bsdf, bool rough, MitsubaScene& scene) 
     if (rough)
         insert_roughness(layer, bsdf);
     if (!bsdf.flag_or("nonlinear", false) && !has_linear_base(bsdf, material, layer))
-        spdlog::warn("{}: the {} is rendered as with nonlinear = true: this program counts every "
-                     "reflection between coat and base with the base's reflectance",
-                     bsdf.document().position(bsdf.element()).text(), bsdf.title());
+        logging::warn("{}: the {} is rendered as with nonlinear = true: this program counts every "
+                      "reflection between coat and base with the base's reflectance",
+                      bsdf.document().position(bsdf.element()).text(), bsdf.title());
     add_layer(material, std::move(layer));
     return material;
 }

@@ -1,10 +1,10 @@
 #include "host/scene/mitsuba/mitsuba_object.h"
 
+#include "host/base/logging.h"
 #include "host/scene/toml/toml_document.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 
@@ -118,8 +118,8 @@ std::vector<pugi::xml_node> MitsubaObject::nested(const std::string& tag) const 
 
 void MitsubaObject::ignore(const std::string& name, const std::string& why) const {
     if (const pugi::xml_node found = find(name))
-        spdlog::warn("{}: {} of the {} is left out: {}", document_->position(found).text(), name,
-                     title(), why);
+        logging::warn("{}: {} of the {} is left out: {}", document_->position(found).text(), name,
+                      title(), why);
 }
 
 void MitsubaObject::finish() const {

@@ -1,6 +1,6 @@
-#include "host/layers/models/adding.h"
 #include "host/scene/mitsuba/mitsuba_scene.h"
-#include "host/spectral/colour/colour.h"
+#include "reradiant/adding.h"
+#include "reradiant/colour.h"
 
 #include <algorithm>
 #include <cmath>

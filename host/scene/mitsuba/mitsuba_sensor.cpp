@@ -1,8 +1,9 @@
 #include "host/scene/mitsuba/mitsuba_scene.h"
 
+#include "host/base/logging.h"
+
 #include <Eigen/LU>
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <charconv>
@@ -39,8 +40,8 @@ FilmSize read_film(const MitsubaObject& sensor, MitsubaScene& scene) {
             film.ignore(name, "images are spectral EXR files in single precision");
         film.ignore("sample_border", "pixels are means over their area");
         if (!film.nested("rfilter").empty())
-            spdlog::warn("{}: the filter of the {} is left out: pixels are means over their area",
-                         scene.document().position(films.front()).text(), film.title());
+            logging::warn("{}: the filter of the {} is left out: pixels are means over their area",
+                          scene.document().position(films.front()).text(), film.title());
         for (const pugi::xml_node& band : film.element().children("spectrum"))
             film.ignore(band.attribute("name").value(), "choose bands with --bands");
         film.finish();

@@ -1,9 +1,9 @@
+#include "host/base/logging.h"
 #include "host/scene/meshes/mesh_io.h"
 #include "host/scene/mitsuba/mitsuba_scene.h"
 
 #include <Eigen/LU>
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -198,8 +198,8 @@ void add_area_light(const MitsubaObject& shape, const pugi::xml_node& element, t
     emitter.finish();
     const auto bsdfs = shape.nested("bsdf");
     if (!bsdfs.empty())
-        spdlog::warn("{}: the bsdf of a shape that emits is left out: lights reflect nothing",
-                     scene.document().position(bsdfs.front()).text());
+        logging::warn("{}: the bsdf of a shape that emits is left out: lights reflect nothing",
+                      scene.document().position(bsdfs.front()).text());
     scene.add("light", std::move(light), shape.element());
 }
 

@@ -1,10 +1,10 @@
 #include "host/scene/mitsuba/mitsuba_scene.h"
 #include "host/scene/toml/toml_document.h"
-#include "host/spectral/colour/colour.h"
 #include "host/spectral/spectrum/spectrum_formats.h"
 #include "host/spectral/text/wavelength_unit.h"
+#include "reradiant/colour.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <charconv>

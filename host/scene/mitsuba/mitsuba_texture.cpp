@@ -1,6 +1,6 @@
 #include "host/scene/mitsuba/mitsuba_scene.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

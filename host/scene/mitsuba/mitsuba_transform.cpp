@@ -1,7 +1,7 @@
 #include "host/scene/mitsuba/mitsuba_object.h"
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <numbers>
 

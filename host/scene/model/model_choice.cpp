@@ -1,6 +1,6 @@
 #include "host/scene/model/model_choice.h"
 
-#include "host/layers/models/adding.h"
+#include "reradiant/adding.h"
 
 namespace reradiant {
 

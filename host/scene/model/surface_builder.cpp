@@ -1,5 +1,7 @@
 #include "host/scene/model/surface_builder.h"
 
+#include "reradiant/scene_file.h"
+
 #include <algorithm>
 
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 #include "host/scene/images/image_io.h"
 #include "host/scene/toml/scene_parts.h"
 #include "host/scene/toml/spectrum_reader.h"
-#include "host/spectral/colour/colour.h"
+#include "reradiant/colour.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

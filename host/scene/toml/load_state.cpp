@@ -1,14 +1,14 @@
 #include "host/scene/toml/load_state.h"
 
-#include "host/base/paths.h"
+#include "host/base/logging.h"
 #include "host/scene/model/named_files.h"
+#include "reradiant/paths.h"
 
 #include <algorithm>
 #include <fstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 namespace reradiant {
 
@@ -94,7 +94,7 @@ void LoadState::add_to_digest(const std::string& bytes) {
 
 void LoadState::warn(const SourcePosition& at, const std::string& text) {
     if (warned_.insert(at.text() + text).second)
-        spdlog::warn("{}: {}", at.text(), text);
+        logging::warn("{}: {}", at.text(), text);
 }
 
 void LoadState::track(const Spectrum& spectrum, const SourcePosition& at, const std::string& name) {
@@ -108,10 +108,10 @@ void LoadState::track(const Spectrum& spectrum, const SourcePosition& at, const 
 void LoadState::warn_outside(double from_nm, double to_nm) const {
     for (const Tracked& spectrum : tracked_)
         if (spectrum.from_nm > from_nm || spectrum.to_nm < to_nm)
-            spdlog::warn("{}: {} has data from {} to {} nm but is used from {} to {} nm; its end "
-                         "values are kept outside (a built-in illuminant is dark there)",
-                         spectrum.position.text(), spectrum.name, spectrum.from_nm, spectrum.to_nm,
-                         from_nm, to_nm);
+            logging::warn("{}: {} has data from {} to {} nm but is used from {} to {} nm; its end "
+                          "values are kept outside (a built-in illuminant is dark there)",
+                          spectrum.position.text(), spectrum.name, spectrum.from_nm, spectrum.to_nm,
+                          from_nm, to_nm);
 }
 
 } // namespace reradiant

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "host/base/error.h"
-#include "host/scene/model/scene.h"
 #include "host/scene/model/sha256.h"
-#include "host/spectral/spectrum/spectrum.h"
+#include "reradiant/error.h"
+#include "reradiant/scene.h"
+#include "reradiant/spectrum.h"
 
 #include <array>
 #include <cstdint>

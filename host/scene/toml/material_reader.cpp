@@ -1,9 +1,10 @@
 #include "host/scene/toml/material_reader.h"
 
-#include "host/base/paths.h"
 #include "host/scene/model/textured_value.h"
 #include "host/scene/toml/stack_reader.h"
 #include "kernels/core/shared.h"
+#include "reradiant/paths.h"
+#include "reradiant/scene_file.h"
 
 #include <algorithm>
 

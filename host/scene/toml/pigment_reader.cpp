@@ -3,11 +3,12 @@
 #include "host/scene/model/textured_value.h"
 #include "host/scene/toml/spectrum_reader.h"
 #include "host/spectral/matrix/kubelka_munk.h"
+#include "reradiant/reradiation.h"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 
@@ -92,7 +93,8 @@ void read_pigments(const TableReader& reader, Substrate& substrate, LoadState& s
     const std::string place = reader.has("pigments") ? "pigments" : "dyes";
     try {
         if (layer.is_fluorescent()) {
-            substrate.matrix = kubelka_munk_matrix(layer, grid_from_range(300.0, 780.0, 5.0));
+            substrate.matrix = std::make_shared<const ReradiationMatrix>(
+                kubelka_munk_matrix(layer, grid_from_range(300.0, 780.0, 5.0)));
             substrate.reflectance = substrate.matrix->reflectance();
         } else {
             substrate.reflectance = kubelka_munk_spectrum(layer);

@@ -2,11 +2,12 @@
 #include "host/scene/toml/material_reader.h"
 #include "host/scene/toml/spectrum_reader.h"
 #include "host/spectral/evidence/matrix_warnings.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/reradiation_file.h"
 
 #include <stdexcept>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 
@@ -34,7 +35,7 @@ void read_matrix(const TableReader& reader, Substrate& substrate, LoadState& sta
     for (const std::string& warning : check_and_repair(matrix, at, state))
         state.warn(at, warning);
     substrate.reflectance = matrix.reflectance();
-    substrate.matrix = std::move(matrix);
+    substrate.matrix = std::make_shared<const ReradiationMatrix>(std::move(matrix));
 }
 
 Fluorophore read_fluorophore(const toml::table& table, const std::string& file, std::size_t index,

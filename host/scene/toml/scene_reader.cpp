@@ -1,9 +1,11 @@
+#include "host/base/logging.h"
 #include "host/scene/mitsuba/mitsuba_import.h"
 #include "host/scene/model/surface_builder.h"
 #include "host/scene/model/textured_value.h"
 #include "host/scene/toml/material_reader.h"
 #include "host/scene/toml/scene_parts.h"
 #include "host/scene/toml/scene_table.h"
+#include "reradiant/scene_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +13,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 
@@ -179,10 +180,10 @@ Material material_from_table(const toml::table& table, const std::filesystem::pa
     MaterialReading reading = read_material(root.plain_table("material"), root.file(),
                                             MaterialPlace::MaterialFile, state);
     if (!reading.textures.empty())
-        spdlog::info("{}: textured values are taken at the middle of their textures",
-                     file.string());
+        logging::info("{}: textured values are taken at the middle of their textures",
+                      file.string());
     if (!reading.mixed_with.empty())
-        spdlog::info("{}: the mixture with \"{}\" is left out", file.string(), reading.mixed_with);
+        logging::info("{}: the mixture with \"{}\" is left out", file.string(), reading.mixed_with);
     Material material = std::move(reading.middle);
     const auto range = default_range_nm(material.substrate.is_fluorescent());
     state.warn_outside(range[0], range[1]);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/scene/model/scene.h"
+#include "reradiant/scene.h"
 
 #include <toml++/toml.h>
 

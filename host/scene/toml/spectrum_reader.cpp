@@ -1,15 +1,16 @@
 #include "host/scene/toml/spectrum_reader.h"
 
 #include "host/scene/model/textured_value.h"
-#include "host/spectral/colour/colour.h"
-#include "host/spectral/files/matrix_io.h"
 #include "host/spectral/text/wavelength_unit.h"
+#include "reradiant/colour.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/spectrum_file.h"
 
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

@@ -5,6 +5,7 @@
 #include "host/scene/toml/scene_table.h"
 #include "host/scene/toml/stack_reader.h"
 #include "host/scene/toml/table_reader.h"
+#include "reradiant/scene_file.h"
 
 namespace reradiant {
 

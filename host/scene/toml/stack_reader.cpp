@@ -1,9 +1,9 @@
 #include "host/scene/toml/stack_reader.h"
 
-#include "host/base/paths.h"
 #include "host/scene/model/textured_value.h"
 #include "host/scene/toml/spectrum_reader.h"
 #include "host/spectral/text/number_table.h"
+#include "reradiant/paths.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/scene/model/scene.h"
 #include "host/scene/toml/toml_document.h"
+#include "reradiant/scene.h"
 
 #include <limits>
 #include <string>

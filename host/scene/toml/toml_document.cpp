@@ -2,7 +2,7 @@
 
 #include "host/base/plain_text.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

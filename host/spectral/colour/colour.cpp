@@ -1,9 +1,9 @@
-#include "host/spectral/colour/colour.h"
+#include "reradiant/colour.h"
 
-#include "host/base/paths.h"
-#include "host/spectral/files/matrix_io.h"
 #include "host/spectral/spectrum/quadrature.h"
 #include "host/spectral/text/number_table.h"
+#include "reradiant/paths.h"
+#include "reradiant/reradiation_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

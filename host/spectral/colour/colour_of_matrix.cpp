@@ -1,8 +1,8 @@
-#include "host/spectral/colour/colour_of_matrix.h"
+#include "reradiant/colour_of_matrix.h"
 
 #include "host/spectral/evidence/scatter_warnings.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "host/spectral/text/text_reader.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/colour/colour_of_matrix.h"
+#include "reradiant/colour_of_matrix.h"
 
 #include <array>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/spectral/colour/colour_of_matrix.h"
 #include "host/spectral/colour/colour_polygons.h"
+#include "reradiant/colour_of_matrix.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "host/spectral/colour/colour.h"
+#include "reradiant/colour.h"
 
 #include <Eigen/Core>
 #include <Eigen/LU>

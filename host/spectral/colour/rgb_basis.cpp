@@ -1,6 +1,6 @@
 #include "host/spectral/colour/rgb_basis.h"
 
-#include "host/spectral/colour/colour.h"
+#include "reradiant/colour.h"
 
 #include <Eigen/Dense>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/spectrum/spectrum.h"
+#include "reradiant/spectrum.h"
 
 #include <array>
 

@@ -1,9 +1,9 @@
-#include "host/spectral/colour/colour.h"
+#include "reradiant/colour.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

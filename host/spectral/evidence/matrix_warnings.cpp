@@ -1,9 +1,9 @@
 #include "host/spectral/evidence/matrix_warnings.h"
 
+#include "host/base/logging.h"
 #include "host/spectral/evidence/matrix_evidence.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +107,7 @@ std::vector<std::string> matrix_warnings(const ReradiationMatrix& matrix) {
 
 void warn_of_matrix(const std::string& name, const ReradiationMatrix& matrix) {
     for (const std::string& warning : matrix_warnings(matrix))
-        spdlog::warn("{}{}{}", name, name.empty() ? "" : ": ", warning);
+        logging::warn("{}{}{}", name, name.empty() ? "" : ": ", warning);
 }
 
 } // namespace reradiant

@@ -1,12 +1,13 @@
 #include "host/spectral/evidence/plausible_matrix.h"
 
-#include "host/base/error.h"
+#include "host/base/output_ending.h"
 #include "host/spectral/evidence/matrix_evidence.h"
 #include "host/spectral/files/matrix_csv_header.h"
-#include "host/spectral/files/matrix_io.h"
 #include "host/spectral/text/text_reader.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

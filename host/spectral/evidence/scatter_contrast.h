@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/spectral/evidence/scatter_line.h"
-#include "host/spectral/matrix/reradiation.h"
+#include "reradiant/reradiation.h"
 
 #include <optional>
 

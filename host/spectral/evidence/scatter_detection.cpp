@@ -1,6 +1,6 @@
 #include "host/spectral/evidence/scatter_detection.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,21 +2,12 @@
 
 #include "host/spectral/evidence/scatter_contrast.h"
 #include "host/spectral/evidence/scatter_line.h"
-#include "host/spectral/matrix/reradiation.h"
+#include "reradiant/fit_mask.h"
+#include "reradiant/reradiation.h"
 
-#include <string>
 #include <vector>
 
 namespace reradiant {
-
-/// A line that stands out of a measured matrix.
-struct FoundScatter {
-    ScatterLine line;
-    int entries = 0;     ///< measured ones on the line
-    double height = 0.0; ///< median over excitations of what stands out, unit 1
-
-    bool operator==(const FoundScatter&) const = default;
-};
 
 /// Lines that stand out of a measured matrix; NaN: not measured. Entries on a line are compared
 /// with their neighbours across it (ScatterContrast), and so are those beside it. An excitation
@@ -28,8 +19,5 @@ struct FoundScatter {
 /// is looked for with `anti_stokes` only.
 std::vector<FoundScatter> find_scatter(const ReradiationMatrix& matrix,
                                        const ScatterSettings& settings);
-
-/// "second-order scatter at emission = 2 x excitation +- 5 nm, about 0.02 high (10 entries)".
-std::string scatter_text(const FoundScatter& found);
 
 } // namespace reradiant

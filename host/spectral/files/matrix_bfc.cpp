@@ -1,9 +1,9 @@
 #include "host/base/atomic_file.h"
+#include "host/base/logging.h"
 #include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/text/text_reader.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <array>
 #include <cmath>
@@ -127,8 +127,8 @@ ReradiationMatrix read_matrix_bfc(const std::filesystem::path& file) {
 
 void write_matrix_bfc(const std::filesystem::path& file, const ReradiationMatrix& matrix) {
     if (matrix.kind == MatrixKind::Model)
-        spdlog::warn("{}: a BFC file reads back as a measurement; write CSV to keep a model",
-                     file.string());
+        logging::warn("{}: a BFC file reads back as a measurement; write CSV to keep a model",
+                      file.string());
     ReradiationMatrix scaled = matrix;
     scale_off_diagonal(scaled, matrix.emission.step_nm / matrix.excitation.step_nm);
     // 5167 stands in the first line of every file of the instrument that we have seen.

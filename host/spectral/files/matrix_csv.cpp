@@ -2,12 +2,12 @@
 #include "host/spectral/files/matrix_csv_header.h"
 #include "host/spectral/files/matrix_csv_table.h"
 #include "host/spectral/files/matrix_formats.h"
-#include "host/spectral/files/matrix_io.h"
 #include "host/spectral/text/csv_lines.h"
 #include "host/spectral/text/text_reader.h"
 #include "host/spectral/text/wavelength_unit.h"
+#include "reradiant/reradiation_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdlib>
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include "host/spectral/text/wavelength_unit.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "host/spectral/files/matrix_io.h"
-#include "host/spectral/matrix/reradiation.h"
 #include "host/spectral/text/csv_lines.h"
 #include "host/spectral/text/text_reader.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/reradiation_file.h"
 
 #include <map>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "host/spectral/files/matrix_csv_table.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <limits>

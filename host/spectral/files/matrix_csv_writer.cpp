@@ -1,8 +1,8 @@
 #include "host/base/atomic_file.h"
 #include "host/spectral/files/matrix_formats.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/reradiation_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

@@ -1,9 +1,10 @@
 #include "host/base/atomic_file.h"
+#include "host/base/logging.h"
 #include "host/exr/exr_input.h"
 #include "host/exr/exr_window.h"
 #include "host/spectral/files/matrix_formats.h"
-#include "host/spectral/files/matrix_io.h"
 #include "host/spectral/spectrum/spectral_names.h"
+#include "reradiant/reradiation_file.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDoubleAttribute.h>
@@ -16,8 +17,7 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -270,9 +270,10 @@ std::vector<Channel> channels_to_write(const ReradiationMatrix& matrix) {
 
 void warn_of_count(const std::filesystem::path& file, std::size_t channels) {
     if (channels > most_channels_elsewhere)
-        spdlog::warn("{}: {} channels; OpenImageIO, and colour-science by it, reads up to {} until "
-                     "its attribute limits:channels is set higher (rr.colour_science does so)",
-                     file.string(), channels, most_channels_elsewhere);
+        logging::warn(
+            "{}: {} channels; OpenImageIO, and colour-science by it, reads up to {} until "
+            "its attribute limits:channels is set higher (rr.colour_science does so)",
+            file.string(), channels, most_channels_elsewhere);
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/base/error.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation_file.h"
 
 #include <filesystem>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "host/spectral/matrix/masked_least_squares.h"
-#include "host/spectral/matrix/reradiation.h"
 #include "host/spectral/matrix/singular_values.h"
+#include "reradiant/reradiation.h"
 
 #include <Eigen/QR>
 

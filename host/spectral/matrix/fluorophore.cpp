@@ -1,6 +1,6 @@
-#include "host/spectral/matrix/reradiation.h"
+#include "reradiant/reradiation.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

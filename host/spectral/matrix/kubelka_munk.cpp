@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

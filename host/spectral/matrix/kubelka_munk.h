@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/spectral/matrix/reradiation.h"
-#include "host/spectral/spectrum/spectrum.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/spectrum.h"
 
 #include <limits>
 #include <vector>

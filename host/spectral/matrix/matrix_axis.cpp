@@ -1,7 +1,7 @@
 #include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/spectrum/rounded_grid.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <charconv>

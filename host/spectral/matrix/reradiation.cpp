@@ -1,9 +1,9 @@
-#include "host/spectral/matrix/reradiation.h"
+#include "reradiant/reradiation.h"
 
 #include "host/spectral/evidence/matrix_warnings.h"
 #include "host/spectral/evidence/scatter_warnings.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

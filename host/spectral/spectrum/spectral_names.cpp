@@ -1,6 +1,6 @@
 #include "host/spectral/spectrum/spectral_names.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <charconv>

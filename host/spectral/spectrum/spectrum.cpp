@@ -1,8 +1,8 @@
-#include "host/spectral/spectrum/spectrum.h"
+#include "reradiant/spectrum.h"
 
 #include "host/spectral/spectrum/quadrature.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

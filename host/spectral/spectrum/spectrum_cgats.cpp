@@ -1,7 +1,7 @@
 #include "host/spectral/spectrum/spectrum_formats.h"
 #include "host/spectral/text/text_reader.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>

@@ -3,7 +3,7 @@
 #include "host/spectral/text/text_reader.h"
 #include "host/spectral/text/wavelength_unit.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

@@ -1,13 +1,10 @@
 #pragma once
 
-#include "host/base/error.h"
+#include "reradiant/table_form.h"
 
 #include <string>
 
 namespace reradiant {
-
-/// What parts the whole from the fraction in a table's numbers.
-enum class DecimalMark { Automatic, Comma, Point };
 
 /// Makes points of the decimal commas in the numbers of a table, so that every cell keeps its
 /// place. Automatic does so where nothing else can be meant: the numbers are whole cells between

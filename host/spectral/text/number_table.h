@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/base/error.h"
 #include "host/spectral/text/wavelength_unit.h"
+#include "reradiant/error.h"
 
 #include <filesystem>
 #include <string>

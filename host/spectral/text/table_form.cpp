@@ -1,9 +1,9 @@
-#include "host/spectral/text/table_form.h"
+#include "reradiant/table_form.h"
 
-#include "host/base/error.h"
 #include "host/spectral/text/text_reader.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 

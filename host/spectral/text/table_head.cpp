@@ -1,11 +1,11 @@
 #include "host/spectral/text/table_head.h"
 
-#include "host/base/error.h"
 #include "host/spectral/text/head_key.h"
 #include "host/spectral/text/text_reader.h"
 #include "host/spectral/text/words.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

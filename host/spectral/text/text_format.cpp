@@ -1,10 +1,10 @@
 #include "host/spectral/text/text_format.h"
 
-#include "host/base/error.h"
 #include "host/base/plain_text.h"
 #include "host/base/regular_file.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

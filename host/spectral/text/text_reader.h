@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/base/error.h"
 #include "host/spectral/text/decimal_comma.h"
 #include "host/spectral/text/text_format.h"
+#include "reradiant/error.h"
 
 #include <algorithm>
 #include <filesystem>

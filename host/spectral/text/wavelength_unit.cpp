@@ -2,7 +2,7 @@
 
 #include "host/spectral/text/words.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

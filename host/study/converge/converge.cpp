@@ -1,13 +1,13 @@
 #include "host/study/converge/converge.h"
 
-#include "host/base/error.h"
+#include "host/base/logging.h"
 #include "host/render/wavefront/team_render.h"
 #include "host/scene/model/sha256.h"
 #include "host/study/converge/converge_checks.h"
 #include "host/study/converge/converge_store.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <iterator>
@@ -92,8 +92,8 @@ private:
         if (seed != reference.image.attributes.end() &&
             seed->second == std::to_string(result_.seed)) {
             ++result_.seed;
-            spdlog::info("{}: has the seed {}; the methods take {}", reference.file.string(),
-                         options_.render.seed, result_.seed);
+            logging::info("{}: has the seed {}; the methods take {}", reference.file.string(),
+                          options_.render.seed, result_.seed);
         }
     }
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "host/base/team.h"
-#include "host/device/device.h"
-#include "host/render/wavefront/renderer.h"
-#include "host/scene/model/scene.h"
 #include "host/study/converge/error_curve.h"
+#include "reradiant/device.h"
+#include "reradiant/render.h"
+#include "reradiant/scene.h"
 
 #include <filesystem>
 #include <functional>

@@ -1,9 +1,9 @@
 #include "host/study/converge/converge_checks.h"
 
-#include "host/base/error.h"
 #include "host/render/tables/scene_tables.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "host/report/svg.h"
 #include "host/study/converge/error_image.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 #include "host/study/converge/converge_store.h"
 
 #include "host/base/atomic_file.h"
-#include "host/base/error.h"
 #include "host/base/json_numbers.h"
 #include "host/base/regular_file.h"
 #include "host/report/json_file.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <limits>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/film/spectral_image.h"
 #include "host/render/film/error_estimate.h"
 #include "host/study/converge/render_method.h"
+#include "reradiant/spectral_image.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,9 +1,9 @@
 #include "host/study/converge/render_method.h"
 
-#include "host/base/error.h"
-#include "host/render/plan/wavelength_plan.h"
+#include "reradiant/error.h"
+#include "reradiant/wavelength_plan.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <charconv>

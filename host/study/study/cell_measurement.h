@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/measure/measure.h"
 #include "host/study/study/study_file.h"
+#include "reradiant/measure.h"
 
 #include <Eigen/Core>
 

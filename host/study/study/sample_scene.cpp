@@ -1,7 +1,7 @@
 #include "host/study/study/sample_scene.h"
 
-#include "host/base/error.h"
 #include "host/scene/toml/scene_table.h"
+#include "reradiant/error.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,15 +1,15 @@
 #include "host/study/study/study.h"
 
-#include "host/base/error.h"
+#include "host/base/logging.h"
 #include "host/base/quiet_log.h"
 #include "host/scene/model/sha256.h"
-#include "host/spectral/colour/colour.h"
 #include "host/study/study/study_store.h"
 #include "host/study/study/sweep_apply.h"
+#include "reradiant/colour.h"
+#include "reradiant/error.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <sstream>
@@ -76,7 +76,7 @@ private:
             if (options_.resume && is_about_checkpoint(error, cell))
                 throw;
             cell.error = error.what();
-            spdlog::error("cell {} ({}) failed: {}", index, cell_name(study_, cell), cell.error);
+            logging::error("cell {} ({}) failed: {}", index, cell_name(study_, cell), cell.error);
         }
         return cell;
     }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "host/base/team.h"
-#include "host/device/device.h"
 #include "host/study/converge/converge.h"
 #include "host/study/study/cell_measurement.h"
 #include "host/study/study/study_file.h"
+#include "reradiant/device.h"
 
 #include <cstdint>
 #include <filesystem>

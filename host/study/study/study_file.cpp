@@ -1,13 +1,14 @@
 #include "host/study/study/study_file.h"
 
-#include "host/base/paths.h"
 #include "host/scene/toml/load_state.h"
 #include "host/scene/toml/scene_table.h"
-#include "host/spectral/colour/colour.h"
 #include "host/study/study/sample_scene.h"
 #include "host/study/study/sweep_apply.h"
 #include "host/study/study/sweep_reader.h"
 #include "host/study/study/toml_path.h"
+#include "reradiant/colour.h"
+#include "reradiant/paths.h"
+#include "reradiant/scene_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/base/error.h"
-#include "host/scene/model/scene.h"
 #include "host/study/converge/render_method.h"
+#include "reradiant/error.h"
+#include "reradiant/scene.h"
 
 #include <toml++/toml.h>
 

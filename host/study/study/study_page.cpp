@@ -6,7 +6,7 @@
 #include "host/study/study/contact_sheet.h"
 #include "host/study/study/study_store.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

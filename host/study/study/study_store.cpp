@@ -1,16 +1,17 @@
 #include "host/study/study/study_store.h"
 
 #include "host/base/atomic_file.h"
-#include "host/base/error.h"
 #include "host/base/json_numbers.h"
 #include "host/base/regular_file.h"
 #include "host/film/colour_image.h"
 #include "host/report/json_file.h"
 #include "host/report/polar_plot.h"
 #include "host/report/svg.h"
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/reradiation_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

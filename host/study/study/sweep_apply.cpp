@@ -2,11 +2,11 @@
 
 #include "host/scene/toml/scene_table.h"
 #include "host/scene/toml/table_reader.h"
-#include "host/spectral/colour/colour.h"
 #include "host/study/study/sample_scene.h"
 #include "host/study/study/toml_path.h"
+#include "reradiant/colour.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <map>

@@ -3,7 +3,7 @@
 #include "host/study/study/sweep_apply.h"
 #include "host/study/study/sweep_target.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <optional>

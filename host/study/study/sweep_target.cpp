@@ -2,7 +2,7 @@
 
 #include "host/study/study/toml_path.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <map>

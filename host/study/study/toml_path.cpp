@@ -1,9 +1,10 @@
 #include "host/study/study/toml_path.h"
 
-#include "host/base/paths.h"
-#include "host/scene/model/scene.h"
 #include "host/scene/toml/scene_table.h"
 #include "host/scene/toml/toml_document.h"
+#include "reradiant/paths.h"
+#include "reradiant/scene.h"
+#include "reradiant/scene_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

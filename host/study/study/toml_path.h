@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/base/error.h"
+#include "reradiant/error.h"
 
 #include <toml++/toml.h>
 

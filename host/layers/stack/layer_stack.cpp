@@ -1,4 +1,4 @@
-#include "host/layers/stack/stack.h"
+#include "reradiant/layer_stack.h"
 
 #include "kernels/scatter/microfacet.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/spectral/spectrum/grid.h"
-#include "host/spectral/spectrum/spectrum.h"
+#include "reradiant/spectrum.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <array>
 #include <string>

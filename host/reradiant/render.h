@@ -1,11 +1,9 @@
 #pragma once
 
-#include "host/device/device.h"
-#include "host/device/program.h"
-#include "host/film/spectral_image.h"
-#include "host/render/plan/wavelength_plan.h"
-#include "host/render/wavefront/ray_sink.h"
-#include "host/scene/model/scene.h"
+#include "reradiant/device.h"
+#include "reradiant/scene.h"
+#include "reradiant/spectral_image.h"
+#include "reradiant/wavelength_plan.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -17,6 +15,8 @@
 #include <vector>
 
 namespace reradiant {
+
+struct RenderHooks; // host/render/wavefront/render_hooks.h
 
 struct RenderOptions {
     std::uint32_t samples = 64;     ///< per pixel; stops at the first of samples, time and error
@@ -41,7 +41,7 @@ struct RenderOptions {
     double checkpoint_seconds = 60.0;     ///< at most so long between two of them
     bool resume = false;                  ///< go on from `checkpoint` where it exists
     bool restart_if_other = false; ///< ... and fits; else warn and begin anew, instead of refusing
-    RaySink on_rays = {};
+    const RenderHooks* hooks = nullptr; ///< of benchmarks; null: there are none
 };
 
 /// The state of a render after one pass.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/spectrum/grid.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <cstddef>
 #include <filesystem>

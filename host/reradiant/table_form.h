@@ -1,12 +1,14 @@
 #pragma once
 
-#include "host/spectral/matrix/reradiation.h"
-#include "host/spectral/text/decimal_comma.h"
+#include "reradiant/reradiation.h"
 
 #include <optional>
 #include <string>
 
 namespace reradiant {
+
+/// What parts the whole from the fraction in a table's numbers.
+enum class DecimalMark { Automatic, Comma, Point };
 
 /// What the reader of a plain table of numbers is told, since the table does not say it. Where it
 /// does, the two must agree.

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/spectral/matrix/reradiation.h"
-#include "host/spectral/spectrum/grid.h"
-#include "host/spectral/text/table_form.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/table_form.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <Eigen/Core>
 

@@ -1,11 +1,7 @@
 #pragma once
 
-#include "host/base/interruption.h"
-#include "host/layers/walk/walk_estimate.h"
-#include "host/measure/surface_model.h"
-#include "host/scene/model/scene.h"
-
-#include <Eigen/Core>
+#include "reradiant/interruption.h"
+#include "reradiant/scene.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -15,6 +11,8 @@
 #include <vector>
 
 namespace reradiant {
+
+struct WalkContinuation; // host/measure/walk_continuation.h
 
 /// What a virtual bispectral goniophotometer is asked for. Angles in degrees, 0 <= theta < 90; phi
 /// is the azimuth of the outgoing direction from the incident one, 180 is the mirror side.
@@ -29,10 +27,9 @@ struct MeasureRequest {
     unsigned seed = 0; ///< of the walk
     std::uint64_t memory_limit_bytes = 0; ///< 0: 80 % of the machine's
     StopFlag stop = nullptr; ///< asked between two walks, and between two pairs of directions
-    /// Of the walk: what an earlier call with the same request told of every theta_i that it began,
-    /// and who is told, between walks, how to get that.
-    std::vector<WalkState> walked = {};
-    std::function<void(const std::function<std::vector<WalkState>()>& states)> pause = {};
+    const WalkContinuation* walks = nullptr; ///< what an earlier call came to; null: nothing
+};
+std::function<void(const std::function<std::vector<WalkState>()>& states)> pause = {};
 };
 
 enum class MeasuredPart { Diffuse, Specular };
@@ -62,18 +59,6 @@ Measurement measure_material(const Material& material, const MeasureRequest& req
 
 /// The bands that a material is measured on.
 WavelengthGrid measured_bands(const Material& material, const MeasureRequest& request);
-
-/// The same for a stack over a substrate given by its per-band matrix, (bands, bands), rows =
-/// emission. `request.bands` is not used.
-Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_band,
-                          const WavelengthGrid& bands, const MeasureRequest& request);
-
-/// The same over any substrate.
-Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& substrate,
-                              const WavelengthGrid& bands, const MeasureRequest& request);
-
-/// A substrate at the band centres.
-SubstrateValues measured_substrate(const Substrate& substrate, const WavelengthGrid& bands);
 
 /// Writes the CSV of `measure`: notes as # lines, then the header and one line a row, 12
 /// significant digits. Atomic.

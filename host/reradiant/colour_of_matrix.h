@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/spectral/colour/colour.h"
-#include "host/spectral/matrix/reradiation.h"
+#include "reradiant/colour.h"
+#include "reradiant/reradiation.h"
 
 #include <array>
 #include <string>

@@ -1,9 +1,10 @@
 #pragma once
 
-#include "host/fit/data/bispectral_data.h"
-#include "host/layers/stack/stack.h"
-#include "host/spectral/matrix/reradiation.h"
+#include "reradiant/bispectral_data.h"
+#include "reradiant/layer_stack.h"
+#include "reradiant/reradiation.h"
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <vector>
 

@@ -1,26 +1,76 @@
 #pragma once
 
-#include "host/fit/data/bispectral_data.h"
-#include "host/fit/data/fit_mask.h"
-#include "host/fit/solver/non_negative_solver.h"
-#include "host/fit/solver/robust_loss.h"
-#include "host/fit/stack/stack_inversion.h"
-#include "host/layers/stack/stack.h"
-#include "host/spectral/matrix/reradiation.h"
+#include "reradiant/bispectral_data.h"
+#include "reradiant/fit_mask.h"
+#include "reradiant/interruption.h"
+#include "reradiant/layer_stack.h"
+#include "reradiant/reradiation.h"
 
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace reradiant {
 
+class SolveJournal; // host/fit/solver/solve_journal.h
+
 enum class FitModel { Factors, Gaussians, Matrix };
 /// `factors`, `gaussians` or `matrix`; input Error otherwise.
 FitModel fit_model_from_name(const std::string& name);
 const char* fit_model_name(FitModel model);
+
+/// What a residual of s standard errors costs: s^2 / 2, or less for outliers.
+enum class RobustLoss { None, Huber, Cauchy };
+
+/// `none`, `huber` or `cauchy`; input Error otherwise.
+RobustLoss robust_loss_from_name(const std::string& name);
+
+/// What is not known about the stack above a sample.
+struct UnknownLayers {
+    bool thickness = false;  ///< of every layer that absorbs, one factor each
+    bool absorption = false; ///< the scale of every layer's absorption, one factor each
+    bool ior = false;        ///< of every layer, one addend each
+
+    bool any() const { return thickness || absorption || ior; }
+};
+/// A list like `thickness,ior`; input Error for another name.
+UnknownLayers unknown_layers_from_names(const std::vector<std::string>& names);
+
+/// What the data say about the unknown numbers of a stack.
+struct StackEstimate {
+    std::vector<std::string> names; ///< "thickness of layer 1", ...
+    Eigen::VectorXd value, sigma;   ///< sigma infinite: the data do not determine it
+    Eigen::MatrixXd correlation;    ///< of the numbers; NaN where undetermined
+    int rank = 0;                   ///< numbers that the data tell apart
+    double reduced_chi_squared = 0.0;
+    /// One sentence a group of numbers that the data cannot tell apart; empty when all are.
+    std::vector<std::string> ambiguities;
+};
+
+struct SolverSettings {
+    int most_iterations = 400;
+    double kkt_tolerance = 1e-8;
+    double most_seconds = 60.0;
+    StopFlag stop = nullptr;         ///< asked before every step
+    SolveJournal* journal = nullptr; ///< keeps every step, and has those of an earlier run
+};
+
+/// How a minimisation went.
+struct SolveTrace {
+    std::vector<double> cost, seconds; ///< after every step; seconds since `start`
+    int iterations = 0;
+    double kkt = 0.0; ///< see kkt_violation
+    bool converged = false;
+    std::string stop_reason;
+
+    /// Steps that went on from the end of these.
+    void append(const SolveTrace& more);
+    double final_cost() const { return cost.empty() ? 0.0 : cost.back(); }
+};
 
 inline constexpr int largest_factor_rank = 4;
 inline constexpr int largest_gaussian_count = 24;
@@ -94,5 +144,13 @@ struct FitResult {
 /// when there are fewer data than parameters, for ranks out of range and for geometries that the
 /// stack would need. A result that did not converge says so in `failure`.
 FitResult fit_reradiation(const BispectralData& data, const FitSettings& settings);
+
+/// Writes the fitted model as TOML: a [material] over a Lambertian substrate whose RERADIATION
+/// holds one fluorophore a term (tables of its curves at the data's bands, whatever functions made
+/// them) and the diagonal as reflectance. A `matrix` is named as a file: `matrix_file` (as written
+/// beside it). Returns the largest difference between an entry that the scene's own integration
+/// gives and the fitted one, relative to the largest entry; 0 for a `matrix`. Atomic.
+double write_model_file(const std::filesystem::path& file, const FitResult& result,
+                        const std::filesystem::path& matrix_file);
 
 } // namespace reradiant

@@ -1,4 +1,4 @@
-#include "host/render/wavefront/renderer.h"
+#include "reradiant/render.h"
 
 #include "host/render/wavefront/adaptive.h"
 #include "host/render/wavefront/rendering.h"

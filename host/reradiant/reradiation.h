@@ -1,7 +1,8 @@
 #pragma once
 
-#include "host/spectral/spectrum/grid.h"
-#include "host/spectral/spectrum/spectrum.h"
+#include "reradiant/fluorophore.h"
+#include "reradiant/spectrum.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <Eigen/Core>
 
@@ -40,14 +41,6 @@ struct ReradiationMatrix {
 /// Emission band whose centre is the excitation band's centre (to 1e-6 of the smaller step): the
 /// row of the diagonal entry. -1 when there is none.
 int diagonal_row(const ReradiationMatrix& matrix, int excitation_band);
-
-/// One fluorophore: F(lo, li) = Q x(li) li e(lo) / integral over lo > li of e(l) l dl, zero for
-/// lo <= li.
-struct Fluorophore {
-    Spectrum excitation; ///< x: fraction of incident photons absorbed, 0..1
-    Spectrum emission;   ///< e: relative radiant power per nm
-    double quantum_yield = 1.0;
-};
 
 /// A matrix from fluorophores plus reflectance on given grids, each entry the mean over its
 /// emission cell of the integral over its excitation cell (1 nm or finer quadrature). The

@@ -1,6 +1,6 @@
-#include "host/spectral/spectrum/grid.h"
+#include "reradiant/wavelength_grid.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <cstddef>

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "host/base/output_ending.h"
-#include "host/spectral/matrix/reradiation.h"
-#include "host/spectral/text/table_form.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/table_form.h"
 
 #include <filesystem>
 
@@ -39,11 +38,5 @@ void write_reradiation_csv(const std::filesystem::path& file, const ReradiationM
 /// True when a file holds a re-radiation matrix rather than a spectrum: .bfc, .exr, or a text
 /// whose first lines say so or are headed by wavelengths. Input Error when it cannot be read.
 bool holds_reradiation(const std::filesystem::path& file);
-
-/// Reads a spectrum by what the file says it is, whatever its ending: JCAMP-DX, CGATS, IES TM-27
-/// (spectrum_formats.h), else a table of two columns (number_table.h).
-Spectrum read_spectrum(const std::filesystem::path& file);
-void write_spectrum(const std::filesystem::path& file, const std::vector<double>& wavelengths_nm,
-                    const std::vector<double>& values);
 
 } // namespace reradiant

@@ -1,20 +1,23 @@
 #pragma once
 
-#include "host/base/error.h"
-#include "host/layers/stack/stack.h"
-#include "host/spectral/matrix/reradiation.h"
-#include "host/spectral/spectrum/grid.h"
-#include "host/spectral/spectrum/spectrum.h"
+#include "reradiant/error.h"
+#include "reradiant/fluorophore.h"
+#include "reradiant/layer_stack.h"
+#include "reradiant/spectrum.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace reradiant {
+
+struct ReradiationMatrix;
 
 using Vector3 = std::array<double, 3>;
 
@@ -57,7 +60,7 @@ struct DirectionalLight {
     Spectrum irradiance;
 };
 /// Constant, or with an image: radiance times the texel's colour, rgb made into a spectrum of
-/// radiance (see rgb_emission in host/spectral/colour/colour.h). Latitude-longitude: the top row
+/// radiance (see rgb_emission in reradiant/colour.h). Latitude-longitude: the top row
 /// looks along +y, the middle column along -z, columns to its right towards +x; turned right-handed
 /// about +y by rotation_deg (90: the middle column looks along -x).
 struct EnvironmentLight {
@@ -83,15 +86,13 @@ struct Substrate {
     int reflectance_image = -1; ///< index into Scene::textures (image): its rgb, made into a
                                 ///< reflectance, multiplies `reflectance`
     Spectrum reflectance;       ///< the non-fluorescent part; for a matrix: its diagonal
-    std::optional<ReradiationMatrix> matrix; ///< already repaired for rendering
+    /// Already repaired for rendering (reradiant/reradiation.h); null: there is none.
+    std::shared_ptr<const ReradiationMatrix> matrix;
     std::vector<Fluorophore> fluorophores;
 
     bool is_fluorescent() const;
     /// Own grid of a matrix (its union of emission and excitation when the steps agree), if any.
     std::optional<WavelengthGrid> own_grid() const;
-    /// Fluorescent part on cells, diagonal = within-cell fluorescence only (reflectance left
-    /// out): square, rows = emission. See reradiation.h.
-    Eigen::MatrixXd fluorescence_on(const WavelengthGrid& cells) const;
     /// Range of wavelengths that can excite, and range that can be emitted; {0, 0} if none.
     std::array<double, 2> excitation_range_nm() const;
     std::array<double, 2> emission_range_nm() const;
@@ -187,20 +188,7 @@ struct Scene {
     std::string hash; ///< hex digest of the scene file and of every file it names
 };
 
-/// Reads a scene file with everything it names (tools/docs/scene-files.md), or an XML
-/// file of Mitsuba 3 (host/scene/mitsuba/mitsuba_import.h). Unknown
-/// keys, wrong types and lengths, out-of-range numbers and unreadable references throw an input
-/// Error at their place. Warnings go to the log.
-Scene load_scene(const std::filesystem::path& file);
-
 /// Surfaces of a scene that was put together in code: surface i is material i.
 std::vector<Surface> plain_surfaces(const Scene& scene);
-
-/// Names that `preset = "..."` takes, sorted: the files of spectra/materials.
-std::vector<std::string> preset_names();
-
-/// Reads a MATERIAL.toml with one [material]. One material stands at one point: textures are taken
-/// at t = 1/2 and a mixture is left out, which the log says.
-Material load_material(const std::filesystem::path& file);
 
 } // namespace reradiant

@@ -1,11 +1,12 @@
-#include "host/spectral/files/matrix_io.h"
+#include "reradiant/reradiation_file.h"
 
+#include "host/base/output_ending.h"
 #include "host/spectral/evidence/matrix_evidence.h"
 #include "host/spectral/evidence/plausible_matrix.h"
 #include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/text/text_format.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <stdexcept>
 
