@@ -51,9 +51,9 @@ private:
 /// A device with one in-order queue that takes the time of what it runs.
 class Device {
 public:
-    /// By index or by a part of its name (case-insensitive); empty: the first. Run-time Error
-    /// that lists the devices when there is none, or none that fits. Without `may_share_memory`
-    /// arrays are mapped also where that is not needed.
+    /// Opens a device by its index or by a part of its name (case-insensitive), or the first one
+    /// when that is empty. Throws a run-time Error that lists the devices when there is none, or
+    /// none that fits. Without `may_share_memory` arrays are mapped also where that is not needed.
     explicit Device(const std::string& name_or_index, bool may_share_memory = true);
 
     const DeviceInfo& info() const { return info_; }
@@ -70,12 +70,12 @@ private:
     std::shared_ptr<LoadedPrograms> programs_ = std::make_shared<LoadedPrograms>();
 };
 
-/// Run-time Error when the device cannot allocate so much in one piece.
+/// Throws a run-time Error when the device cannot allocate so much in one piece.
 void check_allocation(const Device& device, std::size_t bytes);
-/// Run-time Error when arrays of so many bytes together are more than the device's memory.
+/// Throws a run-time Error when arrays of so many bytes together are more than the device's memory.
 void check_memory(const Device& device, std::size_t bytes);
 
-/// Input Error of the option --double when the device computes in single precision only.
+/// Throws an input Error of the option --double when the device computes in single precision only.
 void check_double(const DeviceInfo& device);
 
 /// Runs `action`; an OpenCL error becomes a run-time Error that names `what` and the code.

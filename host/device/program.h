@@ -9,7 +9,7 @@
 
 namespace reradiant {
 
-/// What building the programs of a scene took.
+/// `BuildStatistics` says what it took to build the programs of a scene.
 struct BuildStatistics {
     int built = 0, from_cache = 0;
     double seconds = 0.0;
@@ -26,7 +26,7 @@ struct BuildStatistics {
 cl::Program build_program(const Device& device, const std::string& file,
                           const KernelDefines& defines, BuildStatistics* statistics = nullptr);
 
-/// The same for a source that is no file.
+/// Builds a program as `build_program` does, from a source text that is no file.
 cl::Program build_program_from_text(const Device& device, const std::string& name,
                                     const std::string& text, const KernelDefines& defines,
                                     BuildStatistics* statistics = nullptr);
@@ -35,7 +35,8 @@ cl::Program build_program_from_text(const Device& device, const std::string& nam
 class Kernel {
 public:
     Kernel() = default;
-    /// Groups of `local_size` work-items, or of as many as the device can do for this kernel.
+    /// Takes the kernel `name` with groups of `local_size` work-items, or of as many as the device
+    /// can do for it.
     Kernel(const cl::Program& program, const char* name, std::size_t local_size);
 
     template <typename... Arguments>

@@ -16,8 +16,9 @@
 
 namespace reradiant {
 
-/// What a virtual bispectral goniophotometer is asked for. Angles in degrees, 0 <= theta < 90; phi
-/// is the azimuth of the outgoing direction from the incident one, 180 is the mirror side.
+/// A `MeasureRequest` says what a virtual bispectral goniophotometer is asked for. Angles are in
+/// degrees, 0 <= theta < 90; phi is the azimuth of the outgoing direction from the incident one,
+/// 180 is the mirror side.
 struct MeasureRequest {
     std::vector<double> theta_i_deg{0.0};
     std::vector<double> theta_o_deg{0.0};
@@ -25,12 +26,13 @@ struct MeasureRequest {
     bool hemispherical = false; ///< directional-hemispherical; theta_o and phi are not used
     Model model = Model::Auto;
     std::optional<WavelengthGrid> bands; ///< empty: the matrix's own grid
-    long samples = 0;  ///< of the walk: paths for each theta_i, 0: default_walk_samples
-    unsigned seed = 0; ///< of the walk
+    long samples = 0;  ///< the walk's paths for each theta_i, 0: default_walk_samples
+    unsigned seed = 0; ///< the walk's
     std::uint64_t memory_limit_bytes = 0; ///< 0: 80 % of the machine's
     StopFlag stop = nullptr; ///< asked between two walks, and between two pairs of directions
-    /// Of the walk: what an earlier call with the same request told of every theta_i that it began,
-    /// and who is told, between walks, how to get that.
+    /// For the walk: `walked` is what an earlier call with the same request told of every theta_i
+    /// that it began. `pause` is called between walks with a function that returns the same for
+    /// this call.
     std::vector<WalkState> walked = {};
     std::function<void(const std::function<std::vector<WalkState>()>& states)> pause = {};
 };
@@ -63,12 +65,12 @@ Measurement measure_material(const Material& material, const MeasureRequest& req
 /// The bands that a material is measured on.
 WavelengthGrid measured_bands(const Material& material, const MeasureRequest& request);
 
-/// The same for a stack over a substrate given by its per-band matrix, (bands, bands), rows =
-/// emission. `request.bands` is not used.
+/// Measures a stack over a substrate given by its per-band matrix, (bands, bands), rows = emission.
+/// `Model::Auto` means adding, and `request.bands` is not used.
 Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_band,
                           const WavelengthGrid& bands, const MeasureRequest& request);
 
-/// The same over any substrate.
+/// Measures a stack over any substrate, as measure_stack does.
 Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request);
 

@@ -14,7 +14,7 @@ struct MaskBox {
     bool operator==(const MaskBox&) const = default;
 };
 
-/// Which entries of measured data a fit takes as missing.
+/// `MaskRules` say which entries of measured data a fit takes as missing.
 struct MaskRules {
     bool automatic = true; ///< lines of scatter that stand out
     std::vector<ScatterLine> lines;
@@ -28,7 +28,7 @@ struct MaskRules {
 /// Error for anything else, for an order that is named twice and for ranges that are empty.
 MaskRules mask_rules_from_text(const std::string& text);
 
-/// The same form; reading it gives the same rules.
+/// Returns rules in the form that mask_rules_from_text reads; reading it gives the same rules.
 std::string mask_rules_text(const MaskRules& rules);
 
 } // namespace reradiant

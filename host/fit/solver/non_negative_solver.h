@@ -18,7 +18,7 @@ namespace reradiant {
 
 class SolveJournal;
 
-/// How the linear systems of a step are solved.
+/// `LinearAlgebra` says how the linear systems of a step are solved.
 struct LinearAlgebra {
     enum class Type { DenseNormal, SparseNormal } type = Type::DenseNormal;
 };
@@ -45,7 +45,7 @@ struct SolverSettings {
     SolveJournal* journal = nullptr; ///< keeps every step, and has those of an earlier run
 };
 
-/// How a minimisation went.
+/// A `SolveTrace` says how a minimisation went.
 struct SolveTrace {
     std::vector<double> cost, seconds; ///< after every step; seconds since `start`
     int iterations = 0;
@@ -53,7 +53,7 @@ struct SolveTrace {
     bool converged = false;
     std::string stop_reason;
 
-    /// Steps that went on from the end of these.
+    /// Appends steps that went on from the end of these.
     void append(const SolveTrace& more);
     double final_cost() const { return cost.empty() ? 0.0 : cost.back(); }
 };

@@ -8,7 +8,7 @@ class LossFunction;
 
 namespace reradiant {
 
-/// What a residual of s standard errors costs: s^2 / 2, or less for outliers.
+/// A `RobustLoss` says what a residual of s standard errors costs: s^2 / 2, or less for outliers.
 enum class RobustLoss { None, Huber, Cauchy };
 
 /// `none`, `huber` or `cauchy`; input Error otherwise.

@@ -12,22 +12,22 @@
 
 namespace reradiant {
 
-/// What is not known about the stack above a sample.
+/// `UnknownLayers` says what is not known about the stack above a sample.
 struct UnknownLayers {
-    bool thickness = false;  ///< of every layer that absorbs, one factor each
-    bool absorption = false; ///< the scale of every layer's absorption, one factor each
-    bool ior = false;        ///< of every layer, one addend each
+    bool thickness = false;  ///< one factor for each layer that absorbs
+    bool absorption = false; ///< one factor for each layer's absorption
+    bool ior = false;        ///< one addend for each layer
 
     bool any() const { return thickness || absorption || ior; }
 };
 /// A list like `thickness,ior`; input Error for another name.
 UnknownLayers unknown_layers_from_names(const std::vector<std::string>& names);
 
-/// What the data say about the unknown numbers of a stack.
+/// A `StackEstimate` holds what the data say about the unknown numbers of a stack.
 struct StackEstimate {
     std::vector<std::string> names; ///< "thickness of layer 1", ...
     Eigen::VectorXd value, sigma;   ///< sigma infinite: the data do not determine it
-    Eigen::MatrixXd correlation;    ///< of the numbers; NaN where undetermined
+    Eigen::MatrixXd correlation;    ///< between the numbers; NaN where undetermined
     int rank = 0;                   ///< numbers that the data tell apart
     double reduced_chi_squared = 0.0;
     /// One sentence a group of numbers that the data cannot tell apart; empty when all are.

@@ -8,11 +8,13 @@
 
 namespace reradiant {
 
-/// The layers of a MATERIAL.toml, whose substrate may be anything or absent: what lay above a
-/// sample that was measured through them. Input Error with the place.
+/// Reads the layers of a MATERIAL.toml, whose substrate may be anything or absent: the layers are
+/// those that lay above a sample that was measured through them. Throws an input Error with the
+/// place.
 LayerStack load_stack(const std::filesystem::path& file);
 
-/// The same from a table; paths in it start at the file's folder, errors name the file.
+/// Reads the layers from a table as `load_stack` does from a file. Paths in the table start at the
+/// folder of `file`, which errors name.
 LayerStack stack_from_table(const toml::table& table, const std::filesystem::path& file);
 
 } // namespace reradiant

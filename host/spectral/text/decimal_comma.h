@@ -6,7 +6,7 @@
 
 namespace reradiant {
 
-/// What parts the whole from the fraction in a table's numbers.
+/// A `DecimalMark` is the sign that parts the whole from the fraction in a table's numbers.
 enum class DecimalMark { Automatic, Comma, Point };
 
 /// Makes points of the decimal commas in the numbers of a table, so that every cell keeps its
