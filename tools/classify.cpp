@@ -51,7 +51,7 @@ bool is_yes(const std::string& text, const std::string& option) {
     throw_input_error({}, fmt::format("--{} is \"{}\"", option, text), "answer yes or no");
 }
 
-/// From the command line, else from whoever sits at the terminal.
+/// Returns the answer from the command line, else from whoever sits at the terminal.
 bool answer_to(Question question, const ClassifyOptions& options) {
     const auto index = static_cast<std::size_t>(question);
     const QuestionText& text = question_texts().at(index);

@@ -70,7 +70,7 @@ std::vector<ColourPolygon> read_polygons(const ColourOptions& options) {
     return polygons;
 }
 
-/// What one lamp shows of the matrix, and of the one that it is compared with.
+/// The colour of the matrix under one lamp, and that of the matrix that it is compared with.
 struct SeenPair {
     ColourReport report;
     std::optional<ColourReport> against;
@@ -149,7 +149,7 @@ void add_curves(std::vector<svg::Series>& series, const ColourReport& report, bo
     const MatrixColour& colour = report.colour;
     series.push_back({report.illuminant + " total" + suffix, colour.nm, colour.total});
     series.push_back({report.illuminant + " luminescent" + suffix, colour.nm, colour.luminescent});
-    if (reflected) // the same under every lamp
+    if (reflected) // drawn once: it is the same under every lamp
         series.push_back({"reflected" + suffix, colour.nm, colour.reflected});
 }
 

@@ -29,7 +29,8 @@ struct ConvergeCommand {
     std::string methods = "auto,auto+comb:16,weidlich-wilkie", bands;
 };
 
-/// What the run will take at most: methods and references of an earlier run are kept.
+/// Prints the time that the run will take at most: methods and references of an earlier run are
+/// kept.
 void print_plan(const ConvergeOptions& options) {
     const double methods = options.time_seconds * static_cast<double>(options.methods.size());
     const std::string of_methods =

@@ -105,8 +105,8 @@ void warn(const FitResult& result) {
             logging::warn("{}", ambiguity);
 }
 
-/// Says in the last line that residuals are not noise; the exit code. It is no failure where the
-/// user chose how much the model may hold.
+/// Says in the last line that residuals are not noise, and returns the exit code. It is no failure
+/// where the user chose how much the model may hold.
 int judge(const FitOptions& options, const CommonOptions& common, const FitResult& result) {
     if (result.shortfall.empty())
         return 0;
@@ -117,7 +117,7 @@ int judge(const FitOptions& options, const CommonOptions& common, const FitResul
     return was_chosen ? 0 : exit_not_within_noise;
 }
 
-/// What the steps of a fit depend on.
+/// Returns all that the steps of a fit depend on, by name.
 SampleIdentity fit_identity(const FitOptions& options, const FitSettings& settings,
                             const BispectralData& data) {
     const auto number = [](const auto& value) {
@@ -140,7 +140,7 @@ SampleIdentity fit_identity(const FitOptions& options, const FitSettings& settin
             {"most iterations", std::to_string(options.iterations)}};
 }
 
-/// Fits with a checkpoint; nothing when it was interrupted, which it says.
+/// Fits with a checkpoint. Returns nothing when it was interrupted, which it says.
 std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings settings,
                                       const BispectralData& data, bool quiet) {
     KeptWork kept(options.output, fit_identity(options, settings, data),

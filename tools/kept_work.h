@@ -18,8 +18,8 @@ namespace reradiant {
 /// work is done.
 class KeptWork {
 public:
-    /// None is written beside an output that is a device or a pipe. `identity` says what the work
-    /// depends on; the build is added here.
+    /// No checkpoint is written beside an output that is a device or a pipe. `identity` says what
+    /// the work depends on; the build is added here.
     KeptWork(const std::filesystem::path& output, SampleIdentity identity, double seconds);
 
     /// Gives `take` the state to go on from, where there is a checkpoint. Input Error for one that

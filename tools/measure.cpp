@@ -31,7 +31,8 @@ namespace reradiant {
 
 namespace {
 
-/// What WalkState counts of one theta_i: every group of blocks goes on by itself.
+/// The blocks that the WalkState of one theta_i counts when it is done: the groups of blocks
+/// advance in step, and the state counts the blocks that each of the 16 has done.
 constexpr double blocks_in_state = static_cast<double>(walk_blocks) / 16.0;
 
 struct MeasureOptions {
@@ -57,7 +58,8 @@ std::filesystem::path material_file(const MeasureOptions& options) {
     return spectra_directory() / "materials" / (options.preset + ".toml");
 }
 
-/// What a walk depends on. The material's numbers stand for the files that it names.
+/// Returns all that a walk depends on, by name. The numbers of the material stand for the files
+/// that it names.
 SampleIdentity walk_identity(const std::filesystem::path& file, const Material& material,
                              const MeasureRequest& request) {
     const WavelengthGrid bands = measured_bands(material, request);
@@ -80,7 +82,7 @@ SampleIdentity walk_identity(const std::filesystem::path& file, const Material& 
 
 using WalkStates = std::function<std::vector<WalkState>()>;
 
-/// Shows how far walks are, seldom: their states are dear to ask for.
+/// Shows the progress of walks, seldom: their states are dear to ask for.
 class WalkProgress {
 public:
     WalkProgress(bool quiet, const MeasureRequest& request)
@@ -109,7 +111,7 @@ private:
     Clock::time_point next_{};
 };
 
-/// Measures with a checkpoint; nothing when it was interrupted, which it says.
+/// Measures with a checkpoint. Returns nothing when it was interrupted, which it says.
 std::optional<Measurement> measure_and_keep(const MeasureOptions& options, const Material& material,
                                             MeasureRequest request, bool quiet) {
     KeptWork kept(options.output, walk_identity(material_file(options), material, request),

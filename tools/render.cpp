@@ -106,7 +106,7 @@ void print_summary(const RenderResult& result, const RenderCommand& command,
     fmt::print("left out of the kernels: {}\n", fmt::join(result.left_out, "; "));
 }
 
-/// Whether the output is this render already, with as many samples.
+/// Returns true when the output file is already this render, with as many samples.
 bool is_done(const RenderCommand& command, const Scene& scene, const Device& device) {
     std::error_code ignored;
     if (!command.render.resume ||

@@ -100,7 +100,8 @@ struct Removed {
     }
 };
 
-/// By way of a file of its own: some formats are written with seeks, which streams do not take.
+/// Writes a file of its own first and copies it into the stream: some formats are written with
+/// seeks, which streams do not take.
 void write_stream(const fs::path& named, const fs::path& stream,
                   const std::function<void(const fs::path&)>& write) {
     const Removed temporary{

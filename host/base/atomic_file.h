@@ -13,7 +13,7 @@ namespace reradiant {
 void write_atomically(const std::filesystem::path& file,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
-/// The same for text that is ready.
+/// Writes a text that is ready to a file, as write_atomically does.
 void write_text_atomically(const std::filesystem::path& file, const std::string& text);
 
 } // namespace reradiant

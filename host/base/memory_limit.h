@@ -7,7 +7,7 @@
 
 namespace reradiant {
 
-/// Of the whole machine.
+/// Returns the memory of the whole machine, in bytes.
 std::uint64_t machine_memory_bytes();
 
 /// Input Error at `position` when `work` ("the comparison") would take more memory than the limit

@@ -29,7 +29,8 @@ bool is_open_descriptor(const fs::path& link) {
     return folder.filename() == "fd" && folder.string().starts_with("/proc/");
 }
 
-/// Nothing where the folder takes new files, or has no room for them now.
+/// Returns the errno that keeps new files out of the folder; 0 where it takes them, or has no room
+/// for them now.
 int why_not_writable(const fs::path& temporary) {
     const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
     if (descriptor < 0)
@@ -43,7 +44,7 @@ fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// That `file` can be made, or replaced, where it is.
+/// Throws an input Error at `named` unless `file` can be made, or replaced, where it is.
 void check_place(const fs::path& named, const fs::path& file) {
     const SourcePosition position{named.string()};
     const fs::path folder = folder_of(file);

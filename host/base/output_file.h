@@ -4,7 +4,7 @@
 
 namespace reradiant {
 
-/// Where that which is written under a name ends up.
+/// An `OutputFile` says where the bytes that are written under a name end up.
 struct OutputFile {
     std::filesystem::path file; ///< what symbolic links lead to; it need not exist
     /// A device, a pipe or an open descriptor such as /dev/stdout: bytes are sent there, and it is
@@ -26,8 +26,8 @@ std::filesystem::path temporary_beside(const std::filesystem::path& file);
 /// behind. What a disk has no room for is not refused: there may be room by then.
 void check_output_file(const std::filesystem::path& named);
 
-/// The same for a folder to write files into, which is made later when only the folder around it
-/// exists.
+/// Refuses a folder into which files could not be written later, as check_output_file does a file.
+/// A folder that does not exist passes when the folder around it exists: it is made later.
 void check_output_folder(const std::filesystem::path& named);
 
 } // namespace reradiant

@@ -34,7 +34,7 @@ fs::path own_folder() {
     std::error_code failure;
     if (dladdr(reinterpret_cast<const void*>(&own_folder), &info) == 0 || info.dli_fname == nullptr)
         return {};
-    // Of a program that PATH found only its name is known here, and the working folder may hold
+    // For a program that PATH found only its name is known here, and the working folder may hold
     // another file of that name.
     if (const fs::path name = info.dli_fname; name.has_parent_path())
         if (const fs::path itself = fs::canonical(name, failure); !failure)
@@ -42,7 +42,8 @@ fs::path own_folder() {
     return fs::canonical("/proc/self/exe", failure).parent_path();
 }
 
-/// Where the data may lie: as said, beside what was installed, in the source tree.
+/// Returns the folders where the data may lie: the one that RERADIANT_DATA names, those beside what
+/// was installed, the source tree and the folder of the installation.
 std::vector<fs::path> data_candidates() {
     std::vector<fs::path> candidates{environment("RERADIANT_DATA")};
     if (const fs::path own = own_folder(); !own.empty())
@@ -54,7 +55,7 @@ std::vector<fs::path> data_candidates() {
     return candidates;
 }
 
-/// The same warning again says nothing new.
+/// Logs a warning unless it was logged before: the same one again says nothing new.
 void warn_once(const std::string& text) {
     static std::mutex mutex;
     static std::set<std::string> said;
@@ -63,7 +64,8 @@ void warn_once(const std::string& text) {
         logging::warn("{}", text);
 }
 
-/// What the environment names for caches, best first, and how messages call it.
+/// Returns the folders that the environment names for caches, best first, each with what messages
+/// call it.
 std::vector<std::pair<fs::path, std::string>> named_cache_folders() {
     std::vector<std::pair<fs::path, std::string>> folders;
     if (const std::string named = environment("RERADIANT_CACHE"); !named.empty())
@@ -75,7 +77,8 @@ std::vector<std::pair<fs::path, std::string>> named_cache_folders() {
     return folders;
 }
 
-/// Among the temporary files anybody may have made it before.
+/// Returns why a folder cannot be made this user's own, or an empty text. Among the temporary files
+/// anybody may have made it before.
 std::string why_not_private(const fs::path& folder) {
     if (const std::string reason = why_unusable(folder); !reason.empty())
         return reason;

@@ -80,7 +80,7 @@ private:
     double nanoseconds_ = std::numeric_limits<double>::infinity();
 };
 
-/// What all functions of a run share.
+/// A `CheckRun` holds what all functions of a run share.
 struct CheckRun {
     const Device& device;
     const CheckOptions& options;
@@ -118,7 +118,7 @@ void keep_sample(const CheckedFunction& function, std::size_t hard, std::size_t 
     }
 }
 
-/// The same function in double: what it costs, and how far it is from the twin.
+/// Adds what the function costs in double, and how far its results there are from the twin's.
 void add_double(FunctionReport& report, std::span<const ItemError> errors, double nanoseconds) {
     report.double_nanoseconds = nanoseconds;
     for (const ItemError& error : errors)

@@ -80,7 +80,7 @@ std::vector<CheckedFunction> film_functions() {
     };
 }
 
-/// What leaves at one of four lanes of radiance at four others.
+/// Returns what leaves at the `j`-th of four lanes for radiance that arrives at four lanes.
 real shifted(const real* in, const CheckTables* tables, uint j) {
     constexpr uint to[] = {63, 40, 16, 0}, from[] = {0, 10, 20, 63};
     real result = 0.0;

@@ -24,7 +24,7 @@ public:
                                    CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes)) {}
 
     const cl::Buffer& buffer() const { return buffer_; }
-    /// What the buffer lies in, or null where it must be mapped.
+    /// Returns the shared memory that the buffer lies in, or null where the buffer must be mapped.
     void* shared() const { return shared_.get(); }
 
 private:
@@ -38,13 +38,14 @@ private:
             clSVMFree(context(), memory);
         }
     };
-    /// Null when there is none: then a buffer of the driver's may still fit, or say what is wrong.
+    /// Returns null when there is no shared memory: then a buffer of the driver's may still fit, or
+    /// say what is wrong.
     static void* shared_memory(const cl::Context& context, std::size_t bytes) {
         return clSVMAlloc(context(), CL_MEM_READ_WRITE | CL_MEM_SVM_FINE_GRAIN_BUFFER, bytes, 0);
     }
 
     std::unique_ptr<void, Release> shared_;
-    cl::Buffer buffer_; // goes before what it lies in
+    cl::Buffer buffer_; // is destroyed before the memory that it lies in
 };
 
 /// An array that host and device use in turn. On devices that share memory with the host no data

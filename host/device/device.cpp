@@ -119,8 +119,8 @@ FoundDevice choose(const std::string& wanted) {
                         "choose one of " + names);
 }
 
-/// Where /sys is not mounted (bare chroots, some containers) hwloc finds neither memory nor cores
-/// and PoCL aborts the process; then hwloc is told about them.
+/// Tells hwloc about memory and cores if /sys is not mounted (bare chroots, some containers): it
+/// would find neither, and PoCL would abort the process.
 void describe_machine_without_sys() {
     std::error_code ignored;
     if (std::filesystem::is_directory("/sys/devices/system/cpu", ignored))

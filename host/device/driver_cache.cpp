@@ -27,7 +27,7 @@ bool is_running(const std::string& process) {
     return id > 0 && (::kill(static_cast<pid_t>(id), 0) == 0 || errno == EPERM);
 }
 
-/// What marks in the cache tell of the processes that used it.
+/// `Users` says what the marks in the cache folder tell of the processes that used it.
 struct Users {
     bool some_died = false, some_run = false;
 };
@@ -42,7 +42,8 @@ Users users_of(const fs::path& folder) {
     return users;
 }
 
-/// Moved away first, so that a program that starts meanwhile finds all of it or nothing.
+/// Discards a cache folder. It is moved away first, so that a program that starts meanwhile finds
+/// all of it or nothing.
 void discard(const fs::path& folder) {
     std::error_code ignored;
     fs::path away = folder;
@@ -66,7 +67,8 @@ void mark(const fs::path& folder) {
     });
 }
 
-/// What the user chose stays, unless PoCL could not use it: it would have no device then.
+/// Returns true when $POCL_CACHE_DIR names a folder that PoCL can use. With one that it cannot use
+/// PoCL would have no device, so that choice is not kept.
 bool user_has_chosen() {
     const char* const chosen = std::getenv("POCL_CACHE_DIR");
     if (chosen == nullptr || *chosen == '\0')
@@ -78,7 +80,7 @@ bool user_has_chosen() {
     return reason.empty();
 }
 
-std::string problem; ///< what driver_cache_problem returns
+std::string problem; ///< returned by driver_cache_problem
 
 void choose_folder() {
     if (user_has_chosen())

@@ -16,7 +16,7 @@ namespace reradiant {
 cl::Program build_program(const Device& device, const std::string& file,
                           const KernelDefines& defines, BuildStatistics* statistics = nullptr);
 
-/// The same for a source that is no file.
+/// Builds a program as `build_program` does, from a source text that is no file.
 cl::Program build_program_from_text(const Device& device, const std::string& name,
                                     const std::string& text, const KernelDefines& defines,
                                     BuildStatistics* statistics = nullptr);
@@ -25,7 +25,8 @@ cl::Program build_program_from_text(const Device& device, const std::string& nam
 class Kernel {
 public:
     Kernel() = default;
-    /// Groups of `local_size` work-items, or of as many as the device can do for this kernel.
+    /// Takes the kernel `name` with groups of `local_size` work-items, or of as many as the device
+    /// can do for it.
     Kernel(const cl::Program& program, const char* name, std::size_t local_size);
 
     template <typename... Arguments>

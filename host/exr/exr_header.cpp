@@ -87,7 +87,8 @@ struct ChannelList {
     double pixel_bytes = 0.0; ///< of all channels together
     bool is_whole = false;    ///< ends with an empty name, where the attribute ends
 };
-/// Of every channel name, 0, type (1 is half), 12 bytes more.
+/// Reads a list of channels, which has of every channel its name, a 0, its type (4 bytes; 1 is
+/// half) and 12 bytes more.
 ChannelList channels_in(std::string_view list) {
     ChannelList channels;
     for (std::size_t at = 0; at < list.size();) {
@@ -104,7 +105,7 @@ ChannelList channels_in(std::string_view list) {
     return channels;
 }
 
-/// Texts, each behind its length.
+/// Returns whether texts, each behind its length, fill the list exactly.
 bool is_whole_text_list(std::string_view list) {
     std::size_t at = 0;
     while (at < list.size())
@@ -112,7 +113,7 @@ bool is_whole_text_list(std::string_view list) {
     return at == list.size();
 }
 
-/// Whether a value is as long as its type reads.
+/// Returns whether a value is as long as OpenEXR reads for its type.
 bool is_whole(std::string_view type, std::string_view value) {
     for (const FixedSize& fixed : fixed_sizes)
         if (type == fixed.type)
@@ -127,7 +128,7 @@ bool is_whole(std::string_view type, std::string_view value) {
     return true;
 }
 
-/// What a header says about its part's size.
+/// A `PartSize` is what a header says about the size of its part.
 struct PartSize {
     double width = 0.0, height = 0.0, pixel_bytes = 0.0, tile_pixels = 0.0;
     Packing packing = packings.front();
@@ -149,7 +150,7 @@ struct PartSize {
         }
     }
     double bytes() const { return width * height * pixel_bytes; }
-    /// Of the rows or the tile that OpenEXR unpacks together.
+    /// Returns the bytes of the rows or the tile that OpenEXR unpacks together.
     double buffer_bytes() const {
         return pixel_bytes * std::max(tile_pixels, packing.rows * width);
     }
@@ -181,7 +182,7 @@ private:
                           "render or copy it again");
     }
 
-    /// False for an empty header.
+    /// Checks the header of one part; returns false for an empty header.
     bool check_part() {
         bool empty = true;
         PartSize part;

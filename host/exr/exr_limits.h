@@ -6,9 +6,9 @@
 
 namespace reradiant {
 
-/// What every reader of EXR files does first: headers that claim more than the file can hold
-/// are refused (check_exr_header), and sizes beyond a film's 65536 will be, as OpenEXR reads the
-/// header and before it takes memory for tables of rows and tiles.
+/// Does what every reader of EXR files does first. It refuses headers that claim more than the file
+/// can hold (check_exr_header), and has OpenEXR refuse sizes beyond a film's 65536, and tiles
+/// beyond 4096, as it reads the header and before it takes memory for tables of rows and tiles.
 inline void refuse_hostile_exr(const std::filesystem::path& file) {
     constexpr int largest_side = 65536, largest_tile_side = 4096;
     [[maybe_unused]] static const bool limits_set = [] {

@@ -14,8 +14,9 @@
 
 namespace reradiant {
 
-/// Where the pixels of an EXR image lie. The image is the display window; a file gives the pixels
-/// of the data window, which may be larger, smaller or elsewhere. What it does not give is black.
+/// An `ExrWindow` says where the pixels of an EXR image lie. The image is the display window; a
+/// file gives the pixels of the data window, which may be larger, smaller or elsewhere. What it
+/// does not give is black.
 struct ExrWindow {
     Imath::Box2i data, display;
 

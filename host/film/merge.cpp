@@ -63,7 +63,7 @@ SampleIdentity parse_identity(const std::string& text) {
     return identity;
 }
 
-/// What a part says about itself.
+/// A `PartHead` holds what the attributes of a part say about its samples.
 struct PartHead {
     fs::path file;
     std::vector<SampleRange> ranges;

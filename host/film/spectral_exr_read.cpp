@@ -107,7 +107,8 @@ WavelengthGrid grid_of(const fs::path& file, const Imf::Header& header,
     }
 }
 
-/// Where one channel's values go: `stride` floats from one pixel to the next.
+/// A `Target` says where the values of one channel go; `stride` is the number of floats from one
+/// pixel to the next.
 struct Target {
     std::string channel;
     float* first;

@@ -27,17 +27,17 @@ struct SurfaceHit {
     Vec3 position, normal, shading;
     double u, v;
     double distance;
-    double position_error; ///< of each coordinate, rounding to single precision included
+    double position_error; ///< error of each coordinate, rounding to single precision included
 };
 
 struct Box {
     Vec3 lower, upper;
 };
 
-/// What is not made of triangles is intersected in double precision: then the surface that rays
-/// meet is the one that positions are computed on, and a hit's error is that of rounding its
+/// Shapes that are not made of triangles are intersected in double precision: then the surface that
+/// rays meet is the one that positions are computed on, and a hit's error is that of rounding its
 /// coordinates to single precision. `intersect` returns the nearest t in (t_near, t_far), or -1.
-/// `describe` leaves u and v at zero: `set_parameters` has the angles, for who needs them.
+/// `describe` leaves u and v at zero; `set_parameters` sets them for callers that need them.
 
 struct SpherePrimitive {
     Vec3 center;
@@ -81,8 +81,8 @@ struct DiskPrimitive {
 struct TrianglePrimitive {
     std::array<Vec3, 3> corners;
 
-    /// Barycentric coordinates of the second and third corner where the ray meets the triangle,
-    /// pulled into it; `fallback` (Embree's) where the ray lies in its plane.
+    /// Returns the barycentric coordinates of the second and third corner where the ray meets the
+    /// triangle, pulled into it, or `fallback` (Embree's) where the ray lies in its plane.
     std::array<double, 2> barycentric(const Ray& ray, std::array<double, 2> fallback) const;
     SurfaceHit describe(const Ray& ray, std::array<double, 2> barycentric) const;
 };

@@ -8,7 +8,7 @@
 
 namespace reradiant {
 
-/// Whom a surface belongs to.
+/// An `Owner` says which shape, material and light a surface belongs to.
 struct Owner {
     std::uint32_t shape = NO_INDEX, material = NO_INDEX, light = NO_INDEX;
 };

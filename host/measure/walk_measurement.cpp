@@ -76,7 +76,8 @@ void add_rows(Measurement& measurement, const Pairs& possible, const MeasureRow&
         row(band, band, mean.specular(band), error.specular(band), MeasuredPart::Specular);
 }
 
-/// What there is of every theta_i, in order, for a request that wants to hear of it.
+/// A `WalkJournal` keeps the state of the walk of every theta_i, in order, and tells it to a
+/// request that wants to hear of it.
 class WalkJournal {
 public:
     explicit WalkJournal(const MeasureRequest& request)

@@ -31,8 +31,9 @@ public:
     virtual double transmission(double cos_theta) const = 0;
     /// Share r of diffusely emitted flux that comes back down to the substrate.
     virtual double internal_reflectance() const = 0;
-    /// The same for an Oren-Nayar substrate: light is emitted and counted with the weights of
-    /// its directional albedo (host/layers/models/oren_nayar_substrate.h). sigma 0 is the above.
+    /// Returns the internal reflectance for an Oren-Nayar substrate of width sigma: light is
+    /// emitted and counted with the weights of its directional albedo
+    /// (host/layers/models/oren_nayar_substrate.h). sigma = 0 gives the value for diffuse emission.
     virtual double internal_reflectance(double sigma) const = 0;
     /// IOR n_k of the medium above the substrate (1 for a bare one).
     virtual double lowest_ior() const = 0;
@@ -56,14 +57,14 @@ public:
     virtual double lost(double cos_theta) const = 0;
 };
 
-/// Why adding cannot do a stack, or nothing: it knows no flakes, and an operator of a rough
-/// interface for each wavelength of a film costs too much (about a second each).
+/// Returns why adding cannot do a stack, or nothing if it can: it knows no flakes, and an operator
+/// of a rough interface for each wavelength of a film costs too much (about a second each).
 std::optional<std::string> adding_refusal(const LayerStack& stack);
 
-/// Cheap for smooth clear stacks (closed form); for rough ones the interfaces' scattering operators
-/// are computed once per (IOR ratio, distribution, alpha, scattering) and kept in memory and in
-/// the disk cache; slabs that scatter take some 10 ms each. Thread-safe. Input Error for numbers
-/// out of range and for what adding cannot do.
+/// Returns the transport of a stack. It is cheap for smooth clear stacks (closed form); for rough
+/// ones the interfaces' scattering operators are computed once per (IOR ratio, distribution, alpha,
+/// scattering) and kept in memory and in the disk cache; slabs that scatter take some 10 ms each.
+/// Thread-safe. Throws an input Error for numbers out of range and for what adding cannot do.
 std::shared_ptr<const AddingTransport> adding_transport(const StackValues& stack);
 
 } // namespace reradiant

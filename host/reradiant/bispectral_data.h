@@ -21,7 +21,8 @@ struct BispectralGeometry {
     bool operator==(const BispectralGeometry&) const = default;
 };
 
-/// What one geometry saw. Both matrices are (emission, excitation) with rows = emission.
+/// A `BispectralBlock` holds what one geometry saw. Both matrices are (emission, excitation) with
+/// rows = emission.
 struct BispectralBlock {
     /// Empty: a bare Lambertian sample, values are its re-radiation matrix itself.
     std::optional<BispectralGeometry> geometry;

@@ -30,7 +30,8 @@ Xyz xyz_of(const Spectrum& spectrum);
 /// HP1..HP5, LED-B1..LED-B5, LED-BH1, LED-RGB1, LED-V1, LED-V2), relative spectral power as in
 /// the CIE table (100 at 560 nm for A and D65). std::invalid_argument lists what exists.
 Spectrum illuminant(const std::string& name);
-/// The same, scaled to Y = s in the scale of xyz_of.
+/// Returns the CIE standard illuminant of that name, scaled to the luminance `y` in the scale of
+/// xyz_of.
 Spectrum illuminant_with_luminance(const std::string& name, double y);
 
 std::array<double, 3> xyz_to_lab(const Xyz& xyz, const Xyz& white);

@@ -9,7 +9,7 @@
 
 namespace reradiant {
 
-/// How a matrix's colour is summed over wavelengths.
+/// A `ColourSum` says how a matrix's colour is summed over wavelengths.
 enum class ColourSum {
     /// Plain sums over the emission bands' centres, as bispectral instruments report colours (ASTM
     /// E2152): the illuminant is taken at band centres too.
@@ -24,16 +24,17 @@ enum class ColourSum {
     Automatic,
 };
 
-/// How far plain sums at band centres are off for a lamp, of sums over 1 nm in the same bands: the
-/// largest of X, Y and Z of the lamp's own white, each relative to itself, and of the luminance
-/// that its light excites, relative to the colour's. A lamp with lines that band centres hit or
-/// miss is off by per cents, a smooth one on bands of 10 nm by less than 0.11 %.
+/// A `LampError` says how far plain sums at band centres are off for a lamp, compared with sums
+/// over 1 nm in the same bands. `share` is the largest of the errors of X, Y and Z of the lamp's
+/// own white, each relative to itself, and of the luminance that its light excites, relative to the
+/// colour's. A lamp with lines that band centres hit or miss is off by per cents, a smooth one on
+/// bands of 10 nm by less than 0.11 %.
 struct LampError {
     double share = 0.0;
     std::string of; ///< "lamp's own white (Z)" or "fluorescence"
 };
 LampError plain_sums_misjudge(const ReradiationMatrix& matrix, const Spectrum& illuminant);
-/// Beyond this Automatic sums over 1 nm.
+/// Automatic sums over 1 nm where the share of LampError is above this.
 inline constexpr double most_misjudged = 0.002;
 
 /// The colour of a matrix under one illuminant, CIE 1931 2 degree observer.
@@ -48,9 +49,9 @@ struct MatrixColour {
     /// beta_L, the luminescent radiance factor; NaN where the illuminant is dark.
     std::vector<double> luminescent;
     std::vector<double> total; ///< beta_T = beta_R + beta_L; above 1 is legal
-    /// That the sums are over 1 nm. Radiance factors are then those of the bands' mean light.
+    /// True when the sums are over 1 nm. Radiance factors are then those of the bands' mean light.
     bool at_nanometres = false;
-    /// Why, where Automatic chose that: a sentence without the lamp's name.
+    /// The reason where Automatic chose that: a sentence without the lamp's name.
     std::string reason;
 };
 
@@ -61,9 +62,9 @@ struct MatrixColour {
 MatrixColour colour_of_matrix(const ReradiationMatrix& matrix, const Spectrum& illuminant,
                               ColourSum sum);
 
-/// What a reader of the colour must know: excitation below the start of the illuminant's table (380
-/// nm for lamps) is dark, reflectance goes on beyond the excitation bands, the emission bands leave
-/// out a part of the lamp's white, scatter stands out.
+/// Returns what a reader of the colour must know: excitation below the start of the illuminant's
+/// table (380 nm for lamps) is dark, reflectance goes on beyond the excitation bands, the emission
+/// bands leave out a part of the lamp's white, scatter stands out.
 std::vector<std::string> colour_warnings(const ReradiationMatrix& matrix,
                                          const Spectrum& illuminant, const std::string& name);
 

@@ -90,7 +90,7 @@ struct FitSettings {
     std::optional<double> spill_nm;
     MaskRules mask;                  ///< entries that count as not measured
     std::optional<LayerStack> stack; ///< what lay above the sample; empty: nothing did
-    UnknownLayers unknown;           ///< what of the stack is fitted together with the matrix
+    UnknownLayers unknown;           ///< numbers of the stack that are fitted with the matrix
     int starts = 3;                  ///< initial guesses that are tried
     SolverSettings solver;
     unsigned seed = 0; ///< of the random starts

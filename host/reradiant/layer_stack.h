@@ -10,7 +10,7 @@ namespace reradiant {
 enum class Distribution { Blinn, Beckmann, Ggx };
 enum class Scattering { Multiple, Single };
 
-/// The kernels' number of a distribution, MICROFACET_*.
+/// Returns the kernels' number of a distribution, MICROFACET_*.
 int kernel_distribution(Distribution distribution);
 
 /// A dielectric film too thin to be a slab: what it reflects is the coherent (Airy) sum over its
@@ -80,7 +80,7 @@ struct ConductorValues {
     double alpha = 0.0;
     Scattering scattering = Scattering::Multiple;
     FilmValues film = {};
-    double wavelength_nm = 0.0; ///< of the film; 0 when there is none
+    double wavelength_nm = 0.0; ///< for the interference in the film; 0 without a film
 
     bool operator==(const ConductorValues&) const = default;
 };
@@ -93,23 +93,23 @@ struct LayerValues {
     double alpha = 0.0;
     Scattering scattering = Scattering::Multiple;
     double tau = 0.0;            ///< absorption * thickness: optical depth at normal passage
-    double tau_scattering = 0.0; ///< the same of scattering
+    double tau_scattering = 0.0; ///< scattering coefficient * thickness
     double anisotropy = 0.0;
     FilmValues film = {};
     double flake_coverage = 0.0; ///< 0: no flakes
     ConductorValues flakes = {};
-    double wavelength_nm = 0.0; ///< of films; 0 when there is none
+    double wavelength_nm = 0.0; ///< for the interference in films; 0 without a film
 
     bool operator==(const LayerValues&) const = default;
 };
 using StackValues = std::vector<LayerValues>;
 StackValues stack_at(const LayerStack& stack, double wavelength_nm);
 
-/// Width parameter from the half angle where D falls to D(0)/2: ggx alpha^2 =
-/// sin^2 b / (sqrt 2 - cos^2 b); beckmann alpha = tan b / sqrt(ln 2 - 4 ln cos b); blinn
-/// exponent = -ln 2 / ln cos b, alpha = sqrt(2 / (exponent + 2)). 0 for 0 degrees.
+/// Returns the width parameter alpha from the half angle b where D falls to D(0)/2: ggx alpha^2 =
+/// sin^2 b / (sqrt 2 - cos^2 b); beckmann alpha = tan b / sqrt(ln 2 - 4 ln cos b); blinn exponent =
+/// -ln 2 / ln cos b, alpha = sqrt(2 / (exponent + 2)). Returns 0 for 0 degrees.
 double alpha_from_roughness_deg(Distribution distribution, double roughness_deg);
-/// Blinn exponent from alpha: 2 / alpha^2 - 2.
+/// Returns the Blinn exponent of a width alpha: 2 / alpha^2 - 2.
 double blinn_exponent(double alpha);
 
 } // namespace reradiant

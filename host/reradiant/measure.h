@@ -14,8 +14,9 @@ namespace reradiant {
 
 struct WalkContinuation; // host/measure/walk_continuation.h
 
-/// What a virtual bispectral goniophotometer is asked for. Angles in degrees, 0 <= theta < 90; phi
-/// is the azimuth of the outgoing direction from the incident one, 180 is the mirror side.
+/// A `MeasureRequest` says what a virtual bispectral goniophotometer is asked for. Angles are in
+/// degrees, 0 <= theta < 90; phi is the azimuth of the outgoing direction from the incident one,
+/// 180 is the mirror side.
 struct MeasureRequest {
     std::vector<double> theta_i_deg{0.0};
     std::vector<double> theta_o_deg{0.0};
@@ -23,13 +24,11 @@ struct MeasureRequest {
     bool hemispherical = false; ///< directional-hemispherical; theta_o and phi are not used
     Model model = Model::Auto;
     std::optional<WavelengthGrid> bands; ///< empty: the matrix's own grid
-    long samples = 0;  ///< of the walk: paths for each theta_i, 0: default_walk_samples
-    unsigned seed = 0; ///< of the walk
+    long samples = 0;  ///< the walk's paths for each theta_i, 0: default_walk_samples
+    unsigned seed = 0; ///< the walk's
     std::uint64_t memory_limit_bytes = 0; ///< 0: 80 % of the machine's
     StopFlag stop = nullptr; ///< asked between two walks, and between two pairs of directions
     const WalkContinuation* walks = nullptr; ///< what an earlier call came to; null: nothing
-};
-std::function<void(const std::function<std::vector<WalkState>()>& states)> pause = {};
 };
 
 enum class MeasuredPart { Diffuse, Specular };

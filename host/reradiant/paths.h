@@ -26,7 +26,8 @@ std::filesystem::path temporary_directory();
 /// A folder among the temporary files that is the user's alone: drivers load code from there.
 std::filesystem::path private_temporary_directory();
 
-/// Why no files can be put into a folder, which is made where it is not there; empty: they can.
+/// Returns why no files can be put into a folder, which is made where it is not there; empty where
+/// they can.
 std::string why_unusable(const std::filesystem::path& folder);
 
 } // namespace reradiant

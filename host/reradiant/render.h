@@ -36,10 +36,10 @@ struct RenderOptions {
     bool in_double = false; ///< kernels compute in double what they do not keep, for comparison
     std::size_t batch_paths = 1u << 15;
     std::uint64_t memory_limit_bytes = 0; ///< 0: 80 % of the machine's memory
-    int processes_on_machine = 1;         ///< that share it, when there is no limit
-    std::filesystem::path checkpoint;     ///< empty: none is written or read
-    double checkpoint_seconds = 60.0;     ///< at most so long between two of them
-    bool resume = false;                  ///< go on from `checkpoint` where it exists
+    int processes_on_machine = 1;     ///< processes that share the memory when no limit is given
+    std::filesystem::path checkpoint; ///< empty: none is written or read
+    double checkpoint_seconds = 60.0; ///< at most so long between two of them
+    bool resume = false;              ///< go on from `checkpoint` where it exists
     bool restart_if_other = false; ///< ... and fits; else warn and begin anew, instead of refusing
     const RenderHooks* hooks = nullptr; ///< of benchmarks; null: there are none
 };
@@ -49,7 +49,7 @@ struct RenderProgress {
     std::uint32_t samples = 0;
     double seconds = 0.0; ///< since rendering began, set-up not counted
     double relmse = std::numeric_limits<double>::infinity(); ///< estimated
-    /// 95 % interval of the error that the image has (host/render/film/film_sums.h)
+    /// 95 % interval of the error that the image has (host/render/film/error_estimate.h).
     double relmse_low = 0.0, relmse_high = std::numeric_limits<double>::infinity();
 };
 
@@ -66,7 +66,7 @@ struct RenderResult {
     std::map<std::string, double> stage_seconds;
     double total_seconds = 0.0;
     std::uint32_t samples = 0;
-    std::uint32_t resumed_samples = 0; ///< of them, taken from a checkpoint
+    std::uint32_t resumed_samples = 0; ///< those of `samples` that came from a checkpoint
     bool interrupted = false;          ///< `progress` said stop; a checkpoint holds what was done
     std::uint64_t paths = 0, rays = 0, non_finite = 0;
     double relmse = std::numeric_limits<double>::infinity();
@@ -75,7 +75,7 @@ struct RenderResult {
     std::map<std::string, bool> features;
     std::vector<std::string> left_out, notes;
     std::size_t device_bytes = 0, table_bytes = 0;
-    std::uint64_t mapped_bytes = 0; ///< of rays and hits, between device and host
+    std::uint64_t mapped_bytes = 0; ///< rays and hits that went between device and host
 };
 
 /// Renders a scene. `progress` is called after every pass; returning false stops the render, and

@@ -57,7 +57,7 @@ struct ColumnBalance {
 };
 ColumnBalance column_balance(const ReradiationMatrix& matrix);
 
-/// What was changed in order to use a matrix for rendering.
+/// A `MatrixRepair` says what was changed in order to use a matrix for rendering.
 struct MatrixRepair {
     int negative_entries = 0;
     double negative_energy = 0.0; ///< sum of |negative| over the sum of all positive entries

@@ -77,8 +77,9 @@ const Spectrum& light_spectrum(const Light& light);
 /// oren-nayar: Oren and Nayar 1994, qualitative form (the seed's), sigma in radians.
 enum class SubstrateType { Lambert, OrenNayar, Conductor };
 
-/// What happens at the bottom of a stack. Reflectance alone, or a matrix, or fluorophores; a
-/// conductor has none of them. Pigments by Kubelka-Munk arrive here as reflectance and matrix.
+/// A `Substrate` is the bottom of a stack. It has a reflectance alone, or a matrix, or
+/// fluorophores; a conductor has none of them. Pigments by Kubelka-Munk arrive here as reflectance
+/// and matrix.
 struct Substrate {
     SubstrateType type = SubstrateType::Lambert;
     double sigma = 0.0; ///< oren-nayar
@@ -109,10 +110,11 @@ struct Image {
     std::vector<float> rgb; ///< 3 * width * height
 };
 
-/// A number t in 0..1 at every point of a surface (and, for flakes, a normal). What t stands for
-/// is up to the material (its variants).
+/// A texture gives a number t in 0..1 at every point of a surface (and, for flakes, a normal). The
+/// material decides, by its variants, what t stands for.
 enum class TextureType { Noise, Voronoi, Checker, Image };
-/// Where a texture is looked up: in space (world units) or in a shape's u, v.
+/// A `TextureSpace` says where a texture is looked up: in space (world units) or in the u, v of a
+/// shape.
 enum class TextureSpace { World, Uv };
 struct Texture {
     std::string name;
@@ -129,9 +131,9 @@ struct Texture {
     unsigned seed = 0;
 };
 
-/// What a shape refers to: one material, or one per combination of texture levels, or a mixture.
-/// A point picks a level of each texture at random between the two nearest (linear interpolation
-/// in expectation).
+/// A `Surface` is what a shape refers to: one material, or one material per combination of texture
+/// levels, or a mixture. A point picks a level of each texture at random between the two nearest
+/// (linear interpolation in expectation).
 struct Surface {
     std::string name;
     int first_material = 0;    ///< into Scene::materials; the last texture runs fastest
@@ -147,7 +149,7 @@ struct Material {
     Model model = Model::Auto;
     LayerStack stack; ///< air side first; may be empty (bare substrate)
     Substrate substrate;
-    SourcePosition position; ///< of its table, for errors; empty when it was put together in code
+    SourcePosition position; ///< place of its table, for errors; empty for a material made in code
 };
 
 struct SphereShape {

@@ -13,12 +13,12 @@ namespace reradiant {
 /// A spectral image: float (height, width, band), radiance per nm.
 struct SpectralImage {
     int width = 0, height = 0;
-    int left = 0, top = 0; ///< of the first pixel in its film, which a file may say
+    int left = 0, top = 0; ///< place of the first pixel in its film, if a file gives it
     WavelengthGrid bands;
     std::vector<float> values;
     std::vector<float> sample_count; ///< (height, width) or empty
     std::vector<float> variance_y;   ///< variance of each pixel's mean Y, (height, width) or empty
-    std::vector<float> variance_bands;             ///< of each pixel's and band's mean, or empty
+    std::vector<float> variance_bands; ///< variance of each pixel's and band's mean, or empty
     std::map<std::string, std::string> attributes; ///< reradiant:* text attributes
 
     float& at(int x, int y, int band) {
@@ -36,9 +36,9 @@ struct SpectralImage {
 /// tools/docs/scene-files.md "Images". Atomic. Throws an Error that names the file.
 void write_spectral_exr(const std::filesystem::path& file, const SpectralImage& image,
                         double exposure_ev = 0.0);
-/// The image is the display window, black outside the data window. S0 channels may be FLOAT or
-/// HALF, of wavelengths or frequencies; they must ascend in equal steps. Every row is read; input
-/// Error for a truncated file or missing channels.
+/// Reads a spectral EXR. The image is the display window, black outside the data window. S0
+/// channels may be FLOAT or HALF, of wavelengths or frequencies; they must ascend in equal steps.
+/// Every row is read; throws an input Error for a truncated file or missing channels.
 SpectralImage read_spectral_exr(const std::filesystem::path& file);
 
 struct DisplayOptions {
@@ -58,10 +58,11 @@ struct Comparison {
     double relmse = 0.0;      ///< mean of d^2 / (ref^2 + 0.01 mean(ref)^2) over bands and pixels
     double relmse_srgb = 0.0; ///< mean of d^2 / (ref^2 + 0.01) over linear sRGB
     double rmse = 0.0;
-    double bias = 0.0, bias_stderr = 0.0; ///< of the mean over pixels and bands
+    double bias = 0.0, bias_stderr = 0.0; ///< mean error over pixels and bands
     double ciede2000 = 0.0;               ///< mean over pixels
 };
-/// image against reference; input Error unless display windows and bands agree.
+/// Compares an image with a reference; throws an input Error unless display windows and bands
+/// agree.
 Comparison compare_images(const SpectralImage& image, const SpectralImage& reference);
 
 } // namespace reradiant

@@ -28,12 +28,12 @@ public:
     static Spectrum gaussian(double centre_nm, double sigma_nm, double peak);
     /// A box of width_nm with the given integral.
     static Spectrum line(double centre_nm, double width_nm, double integral);
-    /// Planck's law, scaled so that the value is `peak_scale` at 560 nm.
+    /// Planck's law, scaled so that the value at 560 nm is `value_at_560_nm`.
     static Spectrum blackbody(double kelvin, double value_at_560_nm);
 
     Spectrum& operator+=(const Spectrum& other);
     Spectrum scaled(double factor) const;
-    /// The same spectrum without its boxes.
+    /// Returns the spectrum without its boxes.
     Spectrum without_lines() const;
 
     /// Value at one wavelength, boxes included.
@@ -58,8 +58,8 @@ public:
     /// Last wavelength that tables, Gaussians (8 sigma) and boxes describe; 0 when there are
     /// none of them.
     double described_to_nm() const;
-    /// Where a quadrature over the boxless part should be split: nodes of tables and Gaussians
-    /// in steps of sigma; ascending, without repetition.
+    /// Returns the wavelengths at which a quadrature over the boxless part should be split: nodes
+    /// of tables and Gaussians in steps of sigma; ascending, without repetition.
     std::vector<double> breakpoints_nm() const;
 
 private:

@@ -10,7 +10,7 @@
 
 namespace reradiant {
 
-/// What an instrument does to light besides its noise.
+/// A `SynthInstrument` says what an instrument does to light besides its noise.
 struct SynthInstrument {
     /// Full widths at half maximum of the triangular bandpasses; 0: a band sees the mean over its
     /// cell, as the true matrix has it.
@@ -47,8 +47,8 @@ SynthRecipe read_synth_recipe(const std::filesystem::path& file);
 /// The substrate's matrix on the recipe's grids: what a fit should find.
 ReradiationMatrix synth_truth(const SynthRecipe& recipe);
 
-/// What the instrument sees without noise and spill, one matrix (emission, excitation) a geometry:
-/// pi times the BRRDF's diffuse part, or the matrix itself without geometries.
+/// Returns what the instrument sees without noise and spill, one matrix (emission, excitation) for
+/// each geometry: pi times the BRRDF's diffuse part, or the matrix itself without geometries.
 /// std::invalid_argument when the two grids are not parts of one grid but must be (a stack without
 /// bandpasses), and when the bandpasses need too fine a grid.
 std::vector<Eigen::MatrixXd> synth_noise_free(const SynthRecipe& recipe);
@@ -59,7 +59,7 @@ void add_spill(const SynthRecipe& recipe, Eigen::MatrixXd& values);
 struct SynthResult {
     BispectralData data;    ///< sigma: the noise's standard deviation at the noise-free signal
     double peak = 0.0;      ///< largest fluorescent entry without noise
-    double noise_rms = 0.0; ///< of the off-diagonal entries
+    double noise_rms = 0.0; ///< over the off-diagonal entries
 };
 
 /// Noise-free data plus noise; the same seed gives the same data. std::invalid_argument as

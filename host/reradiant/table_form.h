@@ -10,8 +10,8 @@ namespace reradiant {
 /// What parts the whole from the fraction in a table's numbers.
 enum class DecimalMark { Automatic, Comma, Point };
 
-/// What the reader of a plain table of numbers is told, since the table does not say it. Where it
-/// does, the two must agree.
+/// A `TableForm` is what the reader of a plain table of numbers is told, since the table does not
+/// say it. Where it does, the two must agree.
 struct TableForm {
     std::optional<MatrixQuantity> quantity;
     std::optional<bool> rows_are_emission;
@@ -24,7 +24,7 @@ struct TableForm {
     bool operator==(const TableForm&) const = default;
 };
 
-/// The same in a user's words; empty ones say nothing.
+/// `TableWords` holds a TableForm in a user's words; empty ones say nothing.
 struct TableWords {
     std::string rows = {};     ///< emission, excitation (or rows-emission, rows-excitation)
     std::string quantity = {}; ///< per-band, density (or density-per-nm)
@@ -35,11 +35,11 @@ struct TableWords {
     std::string geometry = {}; ///< 45/0, 8/d and so on
 };
 
-/// Input Error for other words.
+/// Returns the form that the words stand for; input Error for other words.
 TableForm table_form(const TableWords& words);
 /// True for rows = emission; input Error for a word that is none of rows.
 bool rows_are_emission(const std::string& rows);
-/// Input Error for a word that is no quantity.
+/// Returns the quantity that a word stands for; input Error for a word that is none.
 MatrixQuantity matrix_quantity(const std::string& quantity);
 
 } // namespace reradiant

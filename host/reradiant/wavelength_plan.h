@@ -10,14 +10,14 @@ namespace reradiant {
 
 /// One wavelength that every path carries: a cell of the comb, or a fixed line of a lamp.
 struct Lane {
-    int cell = 0; ///< of the comb
+    int cell = 0; ///< index in the comb
     bool is_line =
         false; ///< fixed wavelength; its radiance is integrated over the line (no "per nm")
     double line_nm = 0.0, line_width_nm = 0.0;
 };
 
-/// Which wavelengths a scene is sampled at. Each of `phases` sub-cells of the
-/// comb's cells is one phase; a path uses one. Narrow lines stand beside the comb as lanes of
+/// A `WavelengthPlan` says which wavelengths a scene is sampled at. Each of `phases` sub-cells of
+/// the comb's cells is one phase; a path uses one. Narrow lines stand beside the comb as lanes of
 /// their own, after the lane of the cell they lie in, so that lanes ascend in wavelength.
 struct WavelengthPlan {
     WavelengthGrid film;

@@ -1,5 +1,5 @@
-// What the functions that `reradiant check` calls read besides their arguments: one small scene's
-// records and tables.
+// Defines what the functions that `reradiant check` calls read besides their arguments: the records
+// and tables of one small scene.
 #ifndef RERADIANT_CHECK_TABLES_H
 #define RERADIANT_CHECK_TABLES_H
 

@@ -1,6 +1,6 @@
 // The feature bits. The host derives them from the scene and passes each as -D NAME=0|1; the
-// defaults here let every file of this folder compile alone with everything on. A bit that is
-// off removes code, tables, buffers and launches. Structure by define, numbers by argument.
+// defaults here let every file of the kernels compile alone with everything on. A bit that is off
+// removes code, tables, buffers and launches. Structure by define, numbers by argument.
 #ifndef RERADIANT_FEATURES_H
 #define RERADIANT_FEATURES_H
 

@@ -1,6 +1,6 @@
-// What lets a header of this folder compile both as OpenCL C 1.2 (single precision, on the
-// device) and as C++ (double precision, for host tables, tests and debuggers). No operators on
-// vectors, no overloads, no templates: the common subset.
+// Lets the headers of the kernels compile both as OpenCL C 1.2 (single precision, on the device)
+// and as C++ (double precision, for host tables, tests and debuggers). They keep to the common
+// subset: no operators on vectors, no overloads, no templates.
 #ifndef RERADIANT_PORTABLE_H
 #define RERADIANT_PORTABLE_H
 

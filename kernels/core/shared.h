@@ -96,7 +96,7 @@ typedef struct {
     shared_uint octaves;
     shared_float tilt; ///< tangent of the standard deviation of the normals' tilt
     shared_float sharpness;
-    shared_float share; ///< of voronoi cells whose value is 1, the others' is 0; 0: uniform values
+    shared_float share; ///< share of voronoi cells with value 1, others have 0; 0: uniform values
     shared_uint image;  ///< offset of its texels in the tables
     shared_uint width, height;
     shared_uint is_normal_map;
@@ -105,7 +105,8 @@ typedef struct {
 } TextureRecord;
 ASSERT_SIZE(TextureRecord, 52);
 
-/// What a shape refers to: a block of materials, one for every combination of levels.
+/// A `SurfaceRecord` is what a shape refers to: a block of materials, one for every combination of
+/// its textures' levels.
 typedef struct {
     shared_uint first_material;
     shared_uint texture_count;
@@ -129,8 +130,9 @@ typedef struct {
 } CameraRecord;
 ASSERT_SIZE(CameraRecord, 64);
 
-/// What a material's stack is made of, from the air down, for the scalar evaluation of its lobes:
-/// interfaces, sheets of flakes, and a conductor at the end.
+/// A `LayerRecord` is one part of a material's stack, for the scalar evaluation of its lobes: an
+/// interface, a sheet of flakes, or a conductor at the end. The parts follow each other from the
+/// air down.
 typedef struct {
     shared_float eta;   ///< IOR below over IOR above (at the reference wavelength if dispersive)
     shared_float alpha; ///< 0: smooth
@@ -180,7 +182,7 @@ typedef struct {
     shared_uint image_reflectance; ///< [4][phase][lane]: r of the stack, then the spectra that the
                                    ///< image's red, green and blue stand for
     shared_float sigma;            ///< oren-nayar, radians; 0: lambert
-    shared_float lowest_ior;    ///< of the medium above the substrate, at the reference wavelength
+    shared_float lowest_ior; ///< IOR of the medium above the substrate, at the reference wavelength
     shared_uint first_diagonal; ///< oren-nayar: the substrate's own operator, like the others
     shared_uint first_factors, first_dense;
     shared_uint walk;  ///< walked through: the first of its layer_count + 1 parts; or NO_INDEX
@@ -207,7 +209,7 @@ typedef struct {
     shared_uint extinction;   ///< [phase][lane], optical depth at normal passage; NO_INDEX: clear
     shared_uint scattering;   ///< [phase][lane], its scattering part; NO_INDEX: none
     shared_float anisotropy;  ///< mean cosine of scattering
-    shared_float least_depth; ///< of absorption over all lanes, for roulette
+    shared_float least_depth; ///< smallest absorption depth of all lanes, for roulette
     shared_float references[WALK_REFERENCES];
     shared_uint flakes;    ///< at the slab's end: index of their part in the stack; NO_INDEX: none
     shared_float coverage; ///< of the flakes, share of the area
@@ -230,7 +232,7 @@ typedef struct {
 } WalkChunk;
 ASSERT_SIZE(WalkChunk, 128);
 
-/// What `gather` needs of a vertex that was walked through.
+/// A `WalkVertexRecord` holds what `gather` needs of a vertex that was walked through.
 typedef struct {
     shared_uint chunk;     ///< the last one, or NO_INDEX
     shared_uint count;     ///< events in it; those before are full
@@ -272,7 +274,7 @@ typedef struct {
 } DirectionRecord;
 ASSERT_SIZE(DirectionRecord, 32);
 
-/// What happened where a path met a surface (or a light, or the environment).
+/// A `VertexRecord` says what happened where a path met a surface (or a light, or the environment).
 typedef struct {
     shared_uint material;             ///< NO_INDEX: the path ended on `emitter`
     shared_uint emitter;              ///< light whose radiance is seen here

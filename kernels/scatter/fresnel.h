@@ -43,12 +43,11 @@ DEVICE_FUNCTION real fresnel_cos_transmitted(real cos_i, real eta) {
 }
 
 /// Reflectance (unit 1) of an opaque conductor for unpolarised light: IOR eta + i k relative to the
-/// medium of incidence, cos_i >= 0. k == 0 is a dielectric of IOR ratio eta.
-/// Born and Wolf, 14.2, with q = a + i b, q^2 = (eta + i k)^2 - sin^2: |r_s|^2 = ((a - c)^2 + b^2)
-/// /
-/// ((a + c)^2 + b^2) and |r_p / r_s|^2 = ((a c - s^2)^2 + (b c)^2) / ((a c + s^2)^2 + (b c)^2). The
-/// smaller of a and b follows from a b = eta k, and a - c from a^2 - c^2, so that single precision
-/// keeps its digits for strong and for vanishing absorption.
+/// medium of incidence, cos_i >= 0. k == 0 is a dielectric of IOR ratio eta. Born and Wolf, 14.2,
+/// with q = a + i b, q^2 = (eta + i k)^2 - sin^2: |r_s|^2 = ((a - c)^2 + b^2) / ((a + c)^2 + b^2)
+/// and |r_p / r_s|^2 = ((a c - s^2)^2 + (b c)^2) / ((a c + s^2)^2 + (b c)^2). The smaller of a and
+/// b follows from a b = eta k, and a - c from a^2 - c^2, so that single precision keeps its digits
+/// for strong and for vanishing absorption.
 DEVICE_FUNCTION real fresnel_conductor(real cos_i, real eta, real k) {
     real excess = (eta - REAL(1.0)) * (eta + REAL(1.0));
     real cos2 = cos_i * cos_i;

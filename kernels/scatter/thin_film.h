@@ -7,10 +7,10 @@
 
 KERNELS_BEGIN
 
-/// What a film does between its faces: with phase x + 0i or 0 + ix, x = 2 pi d g / wavelength and
-/// g = n_film cos_film, `cosine` is cos x and `sine` is sin(x) / g. Both are real functions of g^2,
-/// also where the film is evanescent; there both are divided by cosh x, which a reflectance does
-/// not see and which keeps thick films from overflowing.
+/// A `FilmPhase` describes a film between its faces: with phase x + 0i or 0 + ix, x = 2 pi d g /
+/// wavelength and g = n_film cos_film, `cosine` is cos x and `sine` is sin(x) / g. Both are real
+/// functions of g^2, also where the film is evanescent; there both are divided by cosh x, which a
+/// reflectance does not see and which keeps thick films from overflowing.
 typedef struct {
     real g2, cosine, sine;
 } FilmPhase;

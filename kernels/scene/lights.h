@@ -47,7 +47,8 @@ DEVICE_FUNCTION LightSample lights_sample_rectangle(LightRecord light, Vec3 from
     return s;
 }
 
-/// Uniform over the cone (Shirley, Wang and Zimmerman 1996), distance to the near surface.
+/// Samples a direction uniformly over the cone of a sphere (Shirley, Wang and Zimmerman 1996); the
+/// distance is that to the near surface.
 DEVICE_FUNCTION LightSample lights_sample_sphere(LightRecord light, Vec3 from, real u1, real u2) {
     const Vec3 to_center = vec3_sub(vec3(light.px, light.py, light.pz), from);
     const real d = sqrt(vec3_dot(to_center, to_center));

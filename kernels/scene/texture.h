@@ -16,11 +16,11 @@
 
 KERNELS_BEGIN
 
-/// What a texture says about a point. slope_x, slope_y: tangents of the normal's tilt along the two
-/// axes of the local frame, 0 for textures without a tilt.
+/// A `TexturePoint` is what a texture says about a point. slope_x and slope_y are the tangents of
+/// the normal's tilt along the two axes of the local frame, 0 for textures without a tilt.
 typedef struct {
     real value;
-    real red, green, blue; ///< of an image, linear; value three times otherwise
+    real red, green, blue; ///< linear colour of an image; otherwise `value` three times
     real slope_x, slope_y;
 } TexturePoint;
 

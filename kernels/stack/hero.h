@@ -110,7 +110,8 @@ HeroLanes hero_shift(__global const float* rows, HeroLanes from, float u, Lanes*
     return to;
 }
 
-/// What leaves at `to` of `value` at `from`, where the wavelength stays.
+/// Returns at the lanes `to` what leaves of `value`, given at the lanes `from`, where the
+/// wavelength stays.
 Lanes hero_unshifted(HeroLanes to, HeroLanes from, Lanes value) {
     Lanes sum = (Lanes)(0.0f);
     for (uint k = 0u; k < HERO; ++k)
@@ -118,7 +119,8 @@ Lanes hero_unshifted(HeroLanes to, HeroLanes from, Lanes value) {
     return sum;
 }
 
-/// reradiation_factored (reradiation.h) from the lanes of one set to those of another.
+/// Does what reradiation_factored (reradiation.h) does, from the lanes of one set to those of
+/// another.
 Lanes hero_factored(HeroLanes to, HeroLanes from, Lanes in, __global const float* factors,
                     uint rank) {
     Lanes sum = (Lanes)(0.0f);
@@ -131,7 +133,8 @@ Lanes hero_factored(HeroLanes to, HeroLanes from, Lanes in, __global const float
     return sum;
 }
 
-/// The same of a dense matrix by columns, matrix[excitation * LANES + emission].
+/// Applies a dense matrix by columns, matrix[excitation * LANES + emission], from the lanes of one
+/// set to those of another.
 Lanes hero_dense(HeroLanes to, HeroLanes from, Lanes in, __global const float* matrix) {
     Lanes sum = (Lanes)(0.0f);
     for (uint k = 0u; k < HERO; ++k)

@@ -30,7 +30,7 @@ typedef struct {
     real largest_albedo;
 } LayerChoice;
 
-/// What shading needs of a material.
+/// A `LayerStackView` holds what shading needs of a material.
 typedef struct {
     MaterialRecord record;
     GLOBAL_CONST LayerRecord* layers;
@@ -155,8 +155,8 @@ DEVICE_FUNCTION void layer_stack_cross(LayerRecord layer, real eta, LayerDescent
     d->wo = vec3(d->wo.x / eta, d->wo.y / eta, cos_o);
 }
 
-/// Down the first `count` parts. The IOR ratios are those of the records, or, with
-/// `lane_etas` not null, lane_etas[layer.eta_lanes].
+/// Takes two directions down the first `count` parts. The IOR ratios are those of the records, or,
+/// with `lane_etas` not null, lane_etas[layer.eta_lanes].
 DEVICE_FUNCTION LayerDescent layer_stack_descend(GLOBAL_CONST LayerRecord* layers, uint count,
                                                  GLOBAL_CONST shared_float* lane_etas, Vec3 wi,
                                                  Vec3 wo) {
@@ -276,9 +276,9 @@ typedef struct {
 } LayerDiffuse;
 
 #if FEATURE_OREN_NAYAR
-/// For two directions in air, refracted down to the substrate (by the IOR at the reference
-/// wavelength): where its first bounce stands apart, the weights `rest` and `first` of
-/// host/layers/models/oren_nayar_substrate.h; else pi f / rho.
+/// Returns the weights of the diffuse part for two directions in air, refracted down to the
+/// substrate (by the IOR at the reference wavelength): where its first bounce stands apart, the
+/// weights `rest` and `first` of host/layers/models/oren_nayar_substrate.h; else pi f / rho.
 DEVICE_FUNCTION LayerDiffuse layer_stack_oren_nayar(MaterialRecord record, Vec3 wi, Vec3 wo) {
     const real n = record.lowest_ior;
     const Vec3 below_i = vec3(wi.x / n, wi.y / n, fresnel_cos_transmitted(wi.z, n));
@@ -297,8 +297,8 @@ DEVICE_FUNCTION LayerDiffuse layer_stack_oren_nayar(MaterialRecord record, Vec3 
 }
 #endif
 
-/// 1, or model A's interfaces (without absorption) where they do not depend on wavelength, and
-/// Oren-Nayar's shape.
+/// Returns the factors of the diffuse part: 1, or model A's interfaces (without absorption) where
+/// they do not depend on wavelength, and Oren-Nayar's shape.
 DEVICE_FUNCTION LayerDiffuse layer_stack_diffuse(LayerStackView stack, Vec3 wi, Vec3 wo) {
     LayerDiffuse factor;
     factor.diffuse = REAL(1.0);

@@ -6,8 +6,9 @@
 #include "kernels/stages/gather_lanes.h"
 
 #if FEATURE_HERO
-/// Where the sets of one path are kept: [depth][path][HERO_WIDTH], those with which it comes to a
-/// vertex from the camera, and the weights of their choice.
+/// A `HeroSets` says where the wavelength sets of one path are kept, in arrays
+/// [depth][path][HERO_WIDTH]: `lanes` holds the sets with which the path comes to a vertex from the
+/// camera, `weights` the weights of their choice.
 typedef struct {
     __global uint* lanes;
     __global float* weights;

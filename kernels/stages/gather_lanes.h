@@ -1,4 +1,5 @@
-// What `gather` knows of a vertex, and lookups in its tables for vectors of a path's wavelengths.
+// Defines what `gather` knows of a vertex, and looks up its tables for vectors of a path's
+// wavelengths.
 #ifndef RERADIANT_GATHER_LANES_H
 #define RERADIANT_GATHER_LANES_H
 

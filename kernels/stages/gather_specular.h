@@ -14,7 +14,8 @@ __global const float* lane_etas(const GatherContext* context, uint lane) {
     return context->tables + (size_t)context->phase * LANES + lane;
 }
 
-/// What model A's interfaces let in and out between two directions, per lane.
+/// Computes, per lane, the shares of light that model A's interfaces let in along wi (way_in) and
+/// out along wo (way_out), as in LayerDescent.
 void model_a_ways(const GatherContext* context, Vec3 wi, Vec3 wo, Lanes* way_in, Lanes* way_out) {
     for (uint i = 0u; i < PATH_CHUNKS * PATH_WIDTH; ++i) {
         const LayerDescent descent =
@@ -26,7 +27,8 @@ void model_a_ways(const GatherContext* context, Vec3 wi, Vec3 wo, Lanes* way_in,
 }
 
 #if FEATURE_DEEPER_LOBES
-/// What the tables add to a deeper lobe of model A in one lane.
+/// Returns the factor that the tables add to a deeper lobe of model A in one lane: albedo (1 -
+/// exp(-tau (1 / cos_i + 1 / cos_o))) of a slab, the tabulated reflectance of facets, else 1.
 float model_a_tabulated_lane(const GatherContext* context, LobeRecord lobe, LayerFacet facet,
                              uint lane) {
 #if FEATURE_SCATTERING_SLABS
@@ -94,7 +96,8 @@ Lanes top_reflectance(const GatherContext* context, Vec3 wi, Vec3 wo, uint chunk
     (FEATURE_SCATTERING_SLABS || FEATURE_TABULATED_REFLECTANCE)
 #define FEATURE_MODEL_A_TABULATED 1
 
-/// What the tables add to a deeper lobe of model A for one vector of lanes.
+/// Returns the factor that the tables add to a deeper lobe of model A for one vector of lanes, as
+/// model_a_tabulated_lane does for one lane.
 Lanes model_a_tabulated(const GatherContext* context, LobeRecord lobe, Vec3 wi, Vec3 wo,
                         uint chunk) {
     const LayerFacet facet = layer_stack_facet(context->layers, lobe.layer, 0, wi, wo);

@@ -1,4 +1,5 @@
-// What reaches the substrate and leaves it: reflectance, re-radiation, its way out.
+// Computes what the substrate does to the light that reaches it: reflectance, re-radiation, its way
+// out.
 #ifndef RERADIANT_GATHER_SUBSTRATE_H
 #define RERADIANT_GATHER_SUBSTRATE_H
 
@@ -113,8 +114,9 @@ void leave_substrate(const GatherContext* context, TableStencil so, const Lanes*
 }
 
 #if FEATURE_MODEL_A_PER_LANE
-/// What model A sends out towards wo of one direction's light on the substrate: the way in acts at
-/// the excitation wavelength, the way out at that of emission, so directions do not mix.
+/// Adds to `sum` what model A sends out towards wo of the light that one direction brings to the
+/// substrate (`down`, which is then set to 0): the way in acts at the excitation wavelength, the
+/// way out at that of emission, so directions do not mix.
 void leave_substrate_per_lane(const GatherContext* context, DirectionRecord d, Vec3 wo,
                               TableStencil so, Lanes* down, Lanes* sum) {
     Lanes way_in[PATH_CHUNKS], way_out[PATH_CHUNKS], left[PATH_CHUNKS];

@@ -30,7 +30,7 @@ void walk_substrate(const GatherContext* context, Lanes* radiance) {
         radiance[c] = (float)PI_REAL * emitted[c];
 }
 
-/// What one event takes from the lanes of `light` or of the path.
+/// Returns the factors by which one event multiplies the lanes of `light` or of the path.
 Lanes walk_event_lanes(const GatherContext* context, WalkEvent event, uint reference, uint chunk) {
     const uint kind = WALK_KIND(event.code);
     const WalkPartRecord part = context->walk_parts[WALK_INDEX(event.code)];

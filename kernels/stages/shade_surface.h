@@ -1,4 +1,4 @@
-// What `shade` reads of the scene, and the point of a surface that a path has met.
+// Defines what `shade` reads of the scene, and finds the point of a surface that a path has met.
 #ifndef RERADIANT_SHADE_SURFACE_H
 #define RERADIANT_SHADE_SURFACE_H
 
@@ -12,7 +12,7 @@
 /// Random dimensions of textures, far from those of lights and directions.
 #define TEXTURE_DIMENSION 0x40000000u
 
-/// What the stage reads of the scene.
+/// A `ShadeScene` holds what the stage `shade` reads of the scene.
 typedef struct {
     __global const MaterialRecord* materials;
     __global const LayerRecord* layers;
@@ -48,11 +48,12 @@ RayRecord ray_record(Vec3 origin, Vec3 direction, real t_far) {
     return ray;
 }
 
-/// Where a path meets a material: local frame on the side the ray came from.
+/// A `SurfacePoint` is the point at which a path meets a material, with a local frame on the side
+/// that the ray came from.
 typedef struct {
     HitRecord hit;
     Frame frame;
-    Vec3 geometric; ///< normal on the side of `to_camera`
+    Vec3 geometric; ///< normal on the side of the camera
     Vec3 wo;        ///< towards the camera, local
     uint material;
 } SurfacePoint;

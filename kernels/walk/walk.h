@@ -71,7 +71,7 @@ int walk_meets_diffuse(Walk* walk) {
     return walk->weight > 0.0f && walk->at.v.z > 0.0f && walk_survives(walk);
 }
 
-/// Through the slab of the medium to its end.
+/// Takes the walk through the slab of the medium to its end; returns 0 where it ends inside.
 int walk_cross_slab(Walk* walk) {
     const uint k = walk->at.medium - 1u;
     const WalkPartRecord part = walk->stack.parts[k];
@@ -86,8 +86,8 @@ int walk_cross_slab(Walk* walk) {
     return 1;
 }
 
-/// On to the next interface or the substrate, through the medium's slab and the flakes at its lower
-/// end.
+/// Takes the walk on to the next interface or the substrate, through the medium's slab and the
+/// flakes at its lower end; returns 0 where it ends on the way.
 int walk_cross(Walk* walk) {
     if (walk->at.medium == 0u)
         return 1;

@@ -73,8 +73,9 @@ DEVICE_FUNCTION real walk_cavity_density(WalkSurface surface, real cos_v, int pa
                              : REAL(0.0);
 }
 
-/// Where given-back light leaves: probability n^2 c lost(c). Sets *passed, returns the direction in
-/// the frame of its side.
+/// Samples the direction in which light that is given back leaves, with a probability in proportion
+/// to n^2 c lost(c), where c is its cosine. Sets *passed to whether it leaves beyond the surface,
+/// and returns the direction in the frame of its side.
 DEVICE_FUNCTION Vec3 walk_cavity_departure(WalkSurface surface, real u1, real u2, real u3,
                                            int* passed) {
     const uint thin = (uint)surface.cavities[0], dense = (uint)surface.cavities[1];

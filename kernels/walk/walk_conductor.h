@@ -117,7 +117,8 @@ int walk_meets_conductor(Walk* walk, uint part, uint place) {
     return walk->weight > 0.0f && walk->at.v.z > 0.0f && walk_survives(walk);
 }
 
-/// Whether a flake lies where the walk comes to the end of its slab, or sets out from there.
+/// Returns whether the walk meets a flake where it comes to the end of its slab, or sets out from
+/// there: at random, by the share of the area that flakes cover.
 int walk_finds_flake(Walk* walk) {
     const uint slab = walk->at.medium - 1u;
     return walk->stack.parts[slab].flakes != NO_INDEX &&

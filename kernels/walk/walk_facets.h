@@ -76,8 +76,9 @@ DEVICE_FUNCTION Vec3 walk_half_reflected(Vec3 v, Vec3 w) {
     return vec3_normalise(vec3_add(v, w));
 }
 
-/// What a refraction from v into w (frame beyond) needs: the facet's normal, and the Jacobian
-/// |dh/dw| = eta^2 |w.h| / (v.h + eta w.h)^2 (Walter et al. 2007 eq. 17), 0 when no facet does it.
+/// A `WalkRefraction` holds what a refraction from v into w (frame beyond) needs: the normal h of
+/// the facet that does it, the cosines at the facet on both sides, and the Jacobian |dh/dw| = eta^2
+/// |w.h| / (v.h + eta w.h)^2 (Walter et al. 2007 eq. 17), 0 when no facet does it.
 typedef struct {
     Vec3 h;
     real cos_i, cos_t, jacobian;
@@ -113,7 +114,8 @@ DEVICE_FUNCTION real walk_reflection_density(WalkSurface surface, Vec3 v, Vec3 w
            (REAL(4.0) * area);
 }
 
-/// The same of refraction into w (frame beyond).
+/// Returns the density, 1/sr, of the light that facets visible from v refract into w (frame
+/// beyond), Fresnel included.
 DEVICE_FUNCTION real walk_refraction_density(WalkSurface surface, Vec3 v, Vec3 w) {
     const WalkRefraction r = walk_refraction(surface, v, w);
     const real area = walk_visible_area(surface, v);

@@ -52,8 +52,9 @@ typedef struct {
     int has_same, has_beyond;
 } WalkTargets;
 
-/// How a walk left: direction in the frame of its side; weight 0 when nothing did. The densities
-/// (1/sr, cosine of the target included) are those of the targets.
+/// A `WalkDeparture` is how a walk left an interface: its direction, in the frame of the side that
+/// it left to, and its weight, 0 when nothing left. The densities (1/sr, cosine of the target
+/// included) are those of leaving towards the targets.
 typedef struct {
     Vec3 direction;
     int passed; ///< beyond the interface
@@ -82,7 +83,7 @@ DEVICE_FUNCTION Vec3 walk_leave_facet(WalkSurface surface, Vec3 v, Vec3 h, int p
     return passes ? walk_refracted(v, h, surface.eta) : walk_reflected(v, h);
 }
 
-/// No densities: a delta has none.
+/// Reflects or refracts a walk at a smooth interface. There are no densities: a delta has none.
 DEVICE_FUNCTION WalkDeparture walk_smooth(WalkSurface surface, Vec3 v, WalkRandom* random) {
     WalkDeparture departure = walk_departure();
     departure.passed = !(walk_uniform(random) < walk_reflectance(surface, v.z));
@@ -110,7 +111,8 @@ DEVICE_FUNCTION void walk_single_densities(WalkSurface surface, Vec3 v, WalkTarg
     }
 }
 
-/// One facet; what other facets mask is lost (Walter et al. 2007). No densities.
+/// Reflects or refracts a walk at one facet; what other facets mask is lost (Walter et al. 2007).
+/// No densities are set.
 DEVICE_FUNCTION WalkDeparture walk_one_facet(WalkSurface surface, Vec3 v, WalkRandom* random) {
     WalkDeparture departure = walk_departure();
     const real u1 = walk_uniform(random), u2 = walk_uniform(random);
@@ -135,7 +137,7 @@ DEVICE_FUNCTION WalkDeparture walk_single(WalkSurface surface, Vec3 v, WalkTarge
     return departure;
 }
 
-/// One facet of V-cavities, or what they lose given back.
+/// Reflects or refracts a walk at one facet of V-cavities, or gives back what they lose.
 DEVICE_FUNCTION WalkDeparture walk_cavities(WalkSurface surface, Vec3 v, WalkTargets targets,
                                             WalkRandom* random) {
     const real lost = walk_cavity_lost(surface, walk_cavity_is_dense(surface), v.z);
@@ -184,7 +186,9 @@ DEVICE_FUNCTION real walk_density_back(const WalkBetweenFacets* walk, Vec3 w) {
     return density * walk_escape(walk->surface, w, walk->height);
 }
 
-/// The same of refraction towards w (frame beyond the present medium).
+/// Returns the density, 1/sr, with which the facet that the walk stands at refracts towards w
+/// (frame beyond the present medium) and out. The height is that of the walk, also at the first
+/// facet.
 DEVICE_FUNCTION real walk_density_through(const WalkBetweenFacets* walk, Vec3 w) {
     const real density = walk_refraction_density(walk->surface, walk->v, w);
     return density > REAL(0.0) ? density * walk_escape(walk->surface, w, REAL(1.0) - walk->height)
@@ -205,7 +209,8 @@ DEVICE_FUNCTION void walk_add_densities(const WalkBetweenFacets* walk, WalkTarge
     }
 }
 
-/// From the facet of normal h to the next one, or out; returns 1 with *direction when out.
+/// Takes a walk from the facet of normal h to the next one, or out; returns 1 with *direction when
+/// out.
 DEVICE_FUNCTION int walk_to_next_facet(WalkBetweenFacets* walk, Vec3 h, int passes, real u,
                                        Vec3* direction) {
     *direction = walk_leave_facet(walk->surface, walk->v, h, passes);
@@ -225,7 +230,7 @@ DEVICE_FUNCTION int walk_to_next_facet(WalkBetweenFacets* walk, Vec3 h, int pass
 #define WALK_FREE_FACETS 64u
 #define WALK_LATE_SURVIVAL REAL(0.9)
 
-/// 1 to go on: late facets survive with a probability that the weight is divided by.
+/// Returns 1 to go on: late facets survive with a probability that the weight is divided by.
 DEVICE_FUNCTION int walk_late_survives(uint order, WalkRandom* random, real* weight) {
     if (order < WALK_FREE_FACETS)
         return 1;

@@ -51,8 +51,8 @@ typedef struct {
 #define WALK_PLACES (2u * WALK_LAYERS + 1u)
 #endif
 
-/// Where a walk is: in medium `medium` (0: air), on its way to a surface. v points back along the
-/// way, in the frame of that surface (v.z > 0).
+/// A `WalkPosition` is the place of a walk: it is in medium `medium` (0: air), on its way to a
+/// surface. v points back along the way, in the frame of that surface (v.z > 0).
 typedef struct {
     Vec3 v;
     uint medium;
@@ -79,7 +79,8 @@ uint walk_interface_ahead(WalkPosition position) {
     return position.down ? position.medium : position.medium - 1u;
 }
 
-/// On to the next surface: turned by the frame of that one.
+/// Sends a walk on to the next surface along a departure, and turns v into the frame of that
+/// surface.
 void walk_go_on(WalkPosition* position, WalkDeparture departure) {
     position->v = vec3(-departure.direction.x, -departure.direction.y, departure.direction.z);
     if (!departure.passed)
@@ -106,8 +107,8 @@ void walk_arrive(WalkArrival* place, WalkArrival light, WalkRandom* random) {
     place->fluence = sum;
 }
 
-/// Down through a rough interface. `single` needs no luck to get through: the reflected share is
-/// left out by weight.
+/// Takes the light down through a rough interface. `single` needs no luck to get through: the
+/// reflected share is left out by weight.
 WalkDeparture walk_light_through(WalkSurface surface, Vec3 v, WalkRandom* random) {
     if (surface.multiple)
         return walk_multiple(surface, v, walk_no_targets(), random);
@@ -139,7 +140,8 @@ WalkDeparture walk_light_smooth(WalkSurface surface, WalkPosition at, WalkRandom
     return departure;
 }
 
-/// Past the flakes at the end of the medium's slab, unmet.
+/// Takes the light past the flakes at the end of the medium's slab, unmet, and records its arrival
+/// at them.
 void walk_light_pass_flakes(WalkStack stack, WalkPosition at, WalkArrival* light,
                             WalkRandom* random, WalkArrival* arrivals) {
 #if FEATURE_TABULATED_REFLECTANCE
@@ -151,7 +153,7 @@ void walk_light_pass_flakes(WalkStack stack, WalkPosition at, WalkArrival* light
 #endif
 }
 
-/// Through the slab of the medium, unscattered.
+/// Takes the light through the slab of the medium, unscattered.
 void walk_light_cross(WalkStack stack, WalkPosition at, WalkArrival* light, WalkRandom* random,
                       WalkArrival* arrivals) {
     if (at.medium == 0u)
@@ -168,8 +170,8 @@ void walk_light_cross(WalkStack stack, WalkPosition at, WalkArrival* light, Walk
         walk_light_pass_flakes(stack, at, light, random, arrivals);
 }
 
-/// At an interface: arrival where it is rough, and the way on. Returns 0 where the light's half
-/// ends.
+/// Takes the light through or off an interface, and records its arrival where that is rough.
+/// Returns 0 where the light's half ends.
 int walk_light_meets(WalkStack stack, WalkPosition* at, WalkArrival* light, WalkRandom* random,
                      WalkArrival* arrivals) {
     const uint k = walk_interface_ahead(*at);

@@ -44,7 +44,8 @@ void walk_count_distance(Walk* walk, WalkPartRecord part, float length, int scat
             (scattered ? log(part.references[r]) : 0.0f) - part.references[r] * length;
 }
 
-/// Through a slab that scatters, from one of its ends to one of its ends.
+/// Takes the walk through a slab that scatters, from one of its ends to one of its ends. Returns 0
+/// where the walk ends inside.
 int walk_scatter_in_slab(Walk* walk, uint k, WalkPartRecord part) {
     float height = walk->at.down ? 0.0f : 1.0f;
     for (;;) {

@@ -32,7 +32,8 @@ typedef struct {
     float log_densities[WALK_REFERENCES]; ///< of all distances so far, under each
 } Walk;
 
-/// How a walk ended: direction in air, and weight of the radiance that comes from there.
+/// A `WalkEnd` is how a walk through a stack ended: its direction in air, and the weight of the
+/// radiance that comes from there.
 typedef struct {
     Vec3 direction;
     float weight; ///< 0: it ended inside

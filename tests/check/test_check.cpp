@@ -112,7 +112,7 @@ TEST(Check, RegressionFileNoticesWhatMoved) {
         const ChangedKernel changed("kernels/scatter/fresnel.h", fresnel_sum,
                                     "r = REAL(0.5005) * (s * s + p * p);");
         CheckReport moved = checked("fresnel_dielectric");
-        moved.functions.front().failures.clear(); // what it says without the file
+        moved.functions.front().failures.clear(); // which do not come from the saved file
         compare_results(saved, moved);
         EXPECT_FALSE(moved.passed());
     }

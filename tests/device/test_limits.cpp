@@ -1,4 +1,5 @@
-// What a device refuses, and that the cause is named before or after it does.
+// These tests are of what a device refuses, and show that the cause is named before or after it
+// does.
 #include "host/device/buffer.h"
 #include "host/device/opencl_device.h"
 #include "host/device/program.h"

@@ -1,4 +1,5 @@
-"""What the faults share: running the program, judging what it left behind, rows of the table."""
+"""The code that the tests of faults share: running the program, judging what it left behind, rows of
+the table."""
 
 import dataclasses
 import os

@@ -58,7 +58,7 @@ inline SpectralImage patterned_image(int width, int height, const WavelengthGrid
     return image;
 }
 
-/// The same radiance in every pixel and band.
+/// Returns an image with `value` as the radiance of every pixel and band.
 inline SpectralImage flat_image(int width, int height, const WavelengthGrid& bands, float value) {
     SpectralImage image = patterned_image(width, height, bands);
     std::fill(image.values.begin(), image.values.end(), value);

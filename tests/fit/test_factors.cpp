@@ -103,7 +103,7 @@ TEST(Factors, BandsCoverTheTruthWhenTermsAreByEvidence) {
                              truth) /
                     runs;
         EXPECT_GE(mean, 0.90) << count;  // the bar of the project
-        EXPECT_LE(mean, 0.995) << count; // of 4 runs: in 20 at most 0.99
+        EXPECT_LE(mean, 0.995) << count; // a mean of 4 runs; that of 20 is 0.99 at most
         if (is_full_run())
             EXPECT_LE(mean, 0.99) << count;
     }

@@ -137,7 +137,7 @@ TEST(FitMask, ScatterNoLongerHidesTheFluorescence) {
 }
 
 TEST(FitMask, NoiseBandsAndMatrixAreThoseOfDataWithGaps) {
-    // As high as the fluorescence, once narrow and once over three bands.
+    // The scatter is as high as the fluorescence, once narrow and once over three bands.
     for (const double fwhm : {2.0, 10.0}) {
         const ScatteredData data(2.0, 1.0, fwhm);
         const FitResult masked = fit(data.scattered, "auto", 2);

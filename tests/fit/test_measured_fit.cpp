@@ -8,7 +8,8 @@
 
 using namespace reradiant;
 
-// Bars on measurements that lie beside the source tree, where they are.
+// These tests hold fits of measurements to bars. The data lie beside the source tree; where they
+// are absent the tests are skipped.
 
 namespace {
 

@@ -10,7 +10,7 @@
 
 using namespace reradiant;
 
-// What the numbers themselves say of their errors.
+// These tests are of what the numbers of a data set themselves say of their errors.
 
 namespace {
 

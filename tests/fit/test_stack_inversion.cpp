@@ -34,7 +34,8 @@ LayerStack varnish(double thickness = 0.5) {
     return {{layer}};
 }
 
-/// What an instrument sees of the substrate under a stack, with the same noise everywhere.
+/// Returns the data of an instrument that sees the substrate under a stack, with the same noise
+/// everywhere.
 BispectralData seen_through(const LayerStack& stack, double noise,
                             const std::vector<double>& theta_o, unsigned seed = 1) {
     MeasureRequest request;
@@ -70,7 +71,7 @@ BispectralData seen_through(const LayerStack& stack, double noise,
 TEST(StackInversion, UndoesModelB) {
     const SubstrateData bare =
         invert_stack(seen_through(varnish(), 0.0, {0.0, 60.0}), varnish(), {});
-    // The same formulas forwards and backwards in double precision; the varnish passes 9 % at 300.
+    // Both ways use the same formulas in double precision; the varnish passes 9 % at 300 nm.
     EXPECT_LE((bare.data.blocks[0].value - substrate().values).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_FALSE(bare.data.blocks[0].geometry);
 }

@@ -175,7 +175,8 @@ TEST_F(Synth, BandpassesWorkUnderAStack) {
     const Eigen::MatrixXd seen = synth_noise_free(recipe)[0];
     recipe.stack.layers.clear();
     const Eigen::MatrixXd bare = synth_noise_free(recipe)[0];
-    // What n = 1.5 takes away: T(30) T(0) / n^2 / (1 - r rho)^2, over this weak substrate.
+    // A layer of n = 1.5 leaves the share T(30) T(0) / n^2 / (1 - r rho)^2 over this weak
+    // substrate.
     const double share = 0.96 * 0.9585 / 2.25 / std::pow(1.0 - 0.596346 * 0.15, 2);
     EXPECT_NEAR(seen.sum() / bare.sum(), share, 0.01);
 }

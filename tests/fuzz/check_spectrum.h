@@ -8,7 +8,8 @@
 
 namespace reradiant::fuzz {
 
-/// What every reader of spectra promises: columns of one length, finite, wavelengths ascending.
+/// Checks what every reader of spectra promises: columns of one length, finite, with wavelengths
+/// that ascend.
 inline void check_spectrum(const NumberTable& table) {
     for (const auto& column : table.columns) {
         require_all_finite(column, "column of a spectrum");

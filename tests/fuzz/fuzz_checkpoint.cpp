@@ -7,7 +7,7 @@ using namespace reradiant;
 
 namespace {
 
-/// As in the corpus.
+/// The checkpoints in the corpus have this many floats and this identity.
 constexpr std::uint64_t floats = 12;
 const SampleIdentity identity = {{"scene", "abc"}, {"seed", "7"}};
 

@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-// What an earlier `converge` kept of a method: it is taken whole or not at all, and never an error.
+// This target reads what an earlier `converge` kept of a method: it is taken whole or not at all,
+// and never an error.
 
 using namespace reradiant;
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-// What `fit` reads: the CSV of `measure`, and the re-radiation CSV with gaps. NaN stands for what
-// was not measured; infinities stand for nothing.
+// This target reads the data of `fit`: the CSV of `measure`, and the re-radiation CSV with gaps.
+// NaN stands for what was not measured; infinities stand for nothing.
 
 using namespace reradiant;
 

@@ -9,7 +9,7 @@ using namespace reradiant;
 
 namespace {
 
-/// As in the corpus.
+/// The checkpoints in the corpus have this identity.
 const SampleIdentity identity = {{"data", "abc"}, {"seed", "7"}};
 
 void read_as_walks(const nlohmann::json& state) {

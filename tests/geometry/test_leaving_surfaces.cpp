@@ -38,7 +38,9 @@ std::vector<RayRecord> rays_towards(const Vector3& center, std::size_t count, un
     return rays;
 }
 
-/// How many rays that leave a convex or flat surface, on the side of its normal, hit it again.
+/// Returns how many rays that leave a convex or flat surface, on the side of its normal, hit it
+/// again. They start where `count` rays towards `center` hit the surface, moved off it as `leave`
+/// says of `scale`.
 std::size_t self_hits(const Shape& shape, const Vector3& center, std::size_t count, float scale) {
     Scene scene;
     scene.shapes = {shape};

@@ -50,8 +50,8 @@ public:
     enum class End { Air, Substrate, Absorbed, Lost };
     struct Result {
         End end;
-        double cosine;    ///< where it left, if it did
-        Vector direction; ///< of travel, there
+        double cosine;    ///< at which it left, if it did
+        Vector direction; ///< in which it travelled there
     };
 
     /// One photon: from the air with cosine c, or emitted by the (black) substrate.
@@ -74,8 +74,8 @@ private:
     static double ior(const StackValues& stack, int medium) {
         return medium == 0 ? 1.0 : stack[static_cast<std::size_t>(medium) - 1].ior;
     }
-    /// From the end of the slab that w points away from to one of its ends, which w then points at;
-    /// false when absorbed on the way.
+    /// Travels from the end of the slab that w points away from to one of its ends, which w then
+    /// points at; false when absorbed on the way.
     bool traverse(const StackValues& stack, int medium, Vector& w) {
         if (medium == 0)
             return true;

@@ -56,7 +56,7 @@ StackValues rough_stack(Engine& engine) {
     return stack;
 }
 
-/// From the normal to 89.9999 degrees.
+/// Returns the cosine of an angle from the normal to 89.9999 degrees.
 double random_cosine(Engine& engine) {
     return uniform(engine, 0, 1) < 0.3 ? std::pow(10.0, uniform(engine, -6.0, 0.0))
                                        : uniform(engine, 0.0, 1.0);

@@ -111,8 +111,8 @@ private:
     std::vector<double> edges_;
 };
 
-/// How often `drawn` finds each cell, empty when it finds a direction where the pdf of `claimed` is
-/// 0.
+/// Returns how often `drawn` finds each cell; empty when it finds a direction where the pdf of
+/// `claimed` is 0.
 std::vector<double> found_cells(const LayeredBsdf& drawn, const LayeredBsdf& claimed, const Vec3& w,
                                 const HalfVectorCells& cells, int count) {
     std::vector<double> seen(cells.count(), 0.0);
@@ -130,10 +130,10 @@ std::vector<double> found_cells(const LayeredBsdf& drawn, const LayeredBsdf& cla
     return seen;
 }
 
-/// How far the directions that `drawn` samples are from what the pdf of `claimed` says: standard
-/// deviations of a chi-square above its mean (Wilson and Hilferty 1931), infinite for a direction
-/// where the pdf is 0. Cells that expect less than 10 are taken together. `jacobian` is a factor
-/// that the pdf ought not to have.
+/// Returns how far the directions that `drawn` samples are from what the pdf of `claimed` says, in
+/// standard deviations of a chi-square above its mean (Wilson and Hilferty 1931); infinite for a
+/// direction where the pdf is 0. Cells that expect less than 10 are taken together. `jacobian` is a
+/// factor that the pdf ought not to have.
 double chi_square_sigmas(const LayeredBsdf& drawn, const LayeredBsdf& claimed, double theta,
                          double alpha, int count, double jacobian = 1.0) {
     const HalfVectorCells cells(alpha);

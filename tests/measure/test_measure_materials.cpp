@@ -188,7 +188,7 @@ TEST(MeasureMaterials, Case17PerfectConductorsReflectEverything) {
         for (const double theta : {0.0, 45.0, 80.0}) {
             const double albedo =
                 whole({}, conductor(1e-9, 5.0, alpha), Model::WeidlichWilkie, theta).diffuse;
-            EXPECT_NEAR(albedo, 1.0, 1e-3) << alpha << " " << theta; // of lobe_albedo
+            EXPECT_NEAR(albedo, 1.0, 1e-3) << alpha << " " << theta; // the error of lobe_albedo
         }
     }
     const double single =

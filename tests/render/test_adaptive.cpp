@@ -155,7 +155,7 @@ TEST(Adaptive, ImagesHaveNoBiasThatCanBeSeen) {
     const auto check = [&](double sum, double sum_of_squares, double expected, double sigmas,
                            const std::string& what) {
         const double n = renders, mean = sum / n;
-        const double tolerance = is_full_run() ? 5e-4 : 3e-3; // of the reference
+        const double tolerance = is_full_run() ? 5e-4 : 3e-3; // relative to the reference
         const double error = std::sqrt(std::max(0.0, sum_of_squares / n - mean * mean) / (n - 1));
         EXPECT_NEAR(mean, expected, sigmas * error + tolerance * expected + 1e-6 * whole) << what;
         return (mean - expected) / expected;

@@ -61,7 +61,7 @@ TEST(EnvironmentImage, ConstantImageIsTheConstantEnvironment) {
     }
 }
 
-/// What a camera at the origin sees in one direction.
+/// Returns the radiance by band that a camera at the origin sees in the direction `towards`.
 std::vector<double> seen(const Image& image, const Vector3& towards, double rotation_deg) {
     Scene scene = plane_scene(material({}, 0.5), 0.0, 2, 2);
     scene.shapes = {{SphereShape{{0, -1000, 0}, 1.0}, 0}}; // nothing in the way

@@ -1,4 +1,5 @@
-// What a scene does not need costs nothing, and edits of numbers build nothing.
+// These tests show that what a scene does not need costs nothing, and that edits of numbers build
+// nothing.
 #include "host/device/opencl_device.h"
 #include "host/device/program.h"
 #include "host/render/plan/render_features.h"
@@ -73,7 +74,7 @@ TEST(LeavingOut, WhatIsOffTakesNoBuffersTablesOrBands) {
     const RenderResult all = rendered(lit_scene(material({}, 0.3)), true);
     EXPECT_LT(some.device_bytes, all.device_bytes);
     EXPECT_LT(some.build.binary_bytes,
-              all.build.binary_bytes * 3 / 5); // what is left: rays, sums, numbers
+              all.build.binary_bytes * 3 / 5); // rays, sums and numbers are left
     for (const char* name : {"fluorescence", "dense_matrix", "spectral_stack", "smooth", "rough",
                              "deeper_lobes", "walk", "textures", "lens"})
         EXPECT_FALSE(some.features.at(name)) << name;
@@ -135,8 +136,8 @@ TEST(LeavingOut, EveryBitAddsCodeAndNoneLeavesAnyWhenOff) {
             << name;
         if (std::find(few.begin(), few.end(), name) == few.end() && !is_full_run())
             continue;
-        // What the compiler makes of more code may be a little less, by what it then inlines
-        // (0.4 % less with LLVM 18 for one bit): the program does not shrink by more than that.
+        // The compiler may make a little less of more code, by what it then inlines (0.4 % less
+        // with LLVM 18 for one bit): the program does not shrink by more than that.
         EXPECT_GT(1.02 * static_cast<double>(program_bytes(with(on))),
                   static_cast<double>(program_bytes(before)))
             << name;

@@ -49,7 +49,7 @@ RenderOptions tiny(unsigned seed) {
     return options;
 }
 
-/// Nothing where the model refuses the material, with a reason.
+/// Renders a scene; returns nothing where the model refuses the material, with a reason.
 std::optional<RenderResult> rendered(const Scene& scene, const RenderOptions& options) {
     try {
         return render(scene, device(), options);

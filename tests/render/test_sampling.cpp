@@ -56,7 +56,7 @@ private:
 };
 
 constexpr int side = 10;             ///< cells along each slope
-constexpr double reach = 4.0;        ///< of the cells, in widths of the narrowest lobe
+constexpr double reach = 4.0;        ///< extent of the cells, in widths of the narrowest lobe
 constexpr int outside = side * side; ///< or below the surface, or in a cell that reaches there
 constexpr int mirror = outside + 1;
 constexpr int cells = mirror + 1;
@@ -166,7 +166,7 @@ double chi_square_sigmas(const std::vector<double>& seen, const std::vector<doub
     }
     if (rare_expected >= 10.0)
         add(rare_seen, rare_expected);
-    else if (rare_seen > 60.0) // of 10 expected: beyond 1e-20
+    else if (rare_seen > 60.0) // fewer than 10 are expected: less likely than 1e-20
         return INFINITY;
     const double k = 2.0 / (9.0 * degrees);
     return (std::cbrt(chi / degrees) - (1.0 - k)) / std::sqrt(k);

@@ -34,7 +34,8 @@ Scene square_scene(std::vector<Material> materials) {
     return scene;
 }
 
-/// Where a point of the film, 0..1 from its upper left corner, lies: right is -x, up is +z.
+/// Returns the point of the square that a point of the film shows; x and y run from 0 to 1 from the
+/// upper left corner of the film, whose right is -x and whose up is +z.
 kernels::Vec3 on_square(double x, double y) {
     return kernels::vec3(1.0 - 2.0 * x, 0.0, 1.0 - 2.0 * y);
 }

@@ -30,9 +30,10 @@ struct Comparison {
     }
 };
 
-/// What stacks show over a re-radiating substrate less what they show over a black one: `adding`
-/// has that exactly in every direction, while it spreads over directions what rough stacks reflect
-/// themselves. Smooth stacks are compared as they are, too.
+/// Compares the walk with `adding` by the radiance of stacks over a re-radiating substrate less
+/// that of the same stacks over a black one: `adding` has that exactly in every direction, while it
+/// spreads over directions what rough stacks reflect themselves. Smooth stacks are compared as they
+/// are, too.
 void expect_agreement_with_adding(const Lighting& lighting, std::uint32_t samples) {
     const std::vector<Stack> stacks = all_stacks();
     std::vector<Material> materials;

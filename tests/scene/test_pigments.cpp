@@ -56,7 +56,7 @@ TEST_F(Pigments, ADyeGivesAMatrix) {
     EXPECT_GT(glowing.matrix->values(glowing.matrix->emission.band_of(540.0),
                                      glowing.matrix->excitation.band_of(450.0)),
               0.0);
-    // Where the dye neither absorbs nor emits only the pigment is left.
+    // At 700 nm the dye neither absorbs nor emits, and only the pigment is left.
     EXPECT_NEAR(glowing.reflectance(700.0),
                 kubelka_munk_reflectance(1.0, 40.0, PigmentLayer::OPAQUE, 0.0), 1e-9);
     // Without emission, or without any of it, the dye absorbs and nothing more.

@@ -94,7 +94,7 @@ TEST(Substrate, FluorescenceOnItsOwnCellsIsTheMatrixWithoutReflectance) {
     const Eigen::MatrixXd cells = fluorescence_of(small_matrix(), grid_from_range(400, 420, 10));
     Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3, 3);
     expected(2, 0) = 0.25;
-    // The same cells: overlaps are whole cells, exact to rounding.
+    // Both grids have the same cells: overlaps are whole cells, exact to rounding.
     EXPECT_LE((cells - expected).cwiseAbs().maxCoeff(), 1e-14);
 }
 

@@ -48,7 +48,8 @@ TEST_F(HostileFiles, Case36TruncationAtEveryByteIsAnErrorOrAWholeMatrix) {
 TEST_F(HostileFiles, Case36BfcCutBeforeItsEndIsRefused) {
     write_reradiation(path("m.bfc"), matrix_);
     const std::string whole = content(path("m.bfc"));
-    // Up to the line end after EOD; only the line end itself may be missing.
+    // Every length up to the line end after EOD is refused; only the line end itself may be
+    // missing.
     for (std::size_t size = 0; size < whole.size() - 2; ++size)
         EXPECT_THROW(read_reradiation(write("m.bfc", whole.substr(0, size))), Error) << size;
 }

@@ -10,7 +10,8 @@ using namespace reradiant;
 
 namespace {
 
-/// What the '#' lines and headings of a re-radiation CSV say, as people and spreadsheets write it.
+/// These tests read the '#' lines and headings of a re-radiation CSV as people and spreadsheets
+/// write them.
 class MatrixHeaders : public ScratchFolder {
 protected:
     ReradiationMatrix read(const std::string& text) const {
@@ -63,7 +64,7 @@ TEST_F(MatrixHeaders, KeysAndValuesAreReadInAnyCase) {
               (std::pair{3, 3}));
     EXPECT_EQ(refused(head + "# orientaion: rows-emission\n" + body, "did you mean 'orientation'"),
               (std::pair{3, 3}));
-    // What no key resembles is a remark.
+    // A line that resembles no key is a remark.
     EXPECT_EQ(read(head + "# source: a lab\n# scale: linear\n# licence = CC0\n# note\n" + body)
                   .values(0, 0),
               0.3);

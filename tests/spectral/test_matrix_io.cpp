@@ -290,7 +290,7 @@ TEST_F(MatrixIo, ExrKeepsFractionalGridsExactly) {
 
 TEST_F(MatrixIo, Case35NumbersDoNotDependOnTheLocale) {
     const std::string before = std::setlocale(LC_ALL, nullptr);
-    // Where the container lacks this locale the test still checks the C locale.
+    // On a machine that lacks this locale the test still checks the C locale.
     const bool comma = std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
     RecordProperty("decimal_comma_locale", comma ? "yes" : "no");
     for (const char* name : {"m.csv", "m.bfc", "m.exr"}) {

@@ -16,7 +16,8 @@ ReradiationMatrix shipped(const std::string& name) {
                             "reradiation" / name);
 }
 
-/// As it is read where its off-diagonal values are `factor` times what they should be.
+/// Returns the matrix as it is read where its off-diagonal values are `factor` times what they
+/// should be.
 ReradiationMatrix scaled(ReradiationMatrix matrix, double factor) {
     for (int i = 0; i < matrix.excitation.count; ++i)
         for (int o = 0; o < matrix.emission.count; ++o)

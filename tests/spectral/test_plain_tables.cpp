@@ -195,7 +195,7 @@ TEST_F(PlainTables, AnUndeclaredTableIsToldTheCommandThatDeclaresIt) {
     refused(percent, "add above the table '# quantity: per-band', '# orientation: rows-emission', "
                      "'# unit: percent'");
     refused(percent, "the orientation of the table is not declared", {.quantity = "per-band"});
-    // What nothing speaks for is a choice.
+    // Nothing speaks for either orientation of this table: the user is given the choice.
     refused("nm,400,410\n400,0.3,0\n410,0,0.4\n", "'--rows excitation' where");
     EXPECT_TRUE(holds_reradiation(write("m.csv", percent)));
     EXPECT_EQ(refusal([&] { read_spectrum(write("m.csv", percent)); }, "re-radiation matrix"),
@@ -238,7 +238,7 @@ TEST_F(PlainTables, TheLongFormNeedsNoOrientationAndMayStateItsUnit) {
 TEST_F(PlainTables, WhatTheProposedCommandWouldRefuseIsSaidAtOnce) {
     refused("nm,400,410,420\n400,0,25,0,0,0,0\n410,0,02,0,5,0,0\n420,0,12,0,03,0,75\n",
             "save the sheet with semicolons or tabs");
-    // What was said already is part of the proposal.
+    // The options that the user gave already are part of the proposal.
     TableWords words{.scale = "0.01"};
     words.anti_stokes = true;
     words.geometry = "45/0";

@@ -32,7 +32,8 @@ protected:
         put("study.toml", text);
         return load_study(folder / "study.toml");
     }
-    /// What loading says after the folder's name: "study.toml:LINE:COLUMN: ...".
+    /// Returns the message with which loading fails, without the folder's name before it:
+    /// "study.toml:LINE:COLUMN: ...".
     std::string refusal(const std::string& text) const {
         try {
             load(text);

@@ -53,7 +53,7 @@ void recover(const SynthRecipe& recipe, const TableOptions& options, unsigned se
         settings.rank = line.what.fluorophores;
     if (!recipe.stack.layers.empty())
         settings.stack = recipe.stack;
-    const std::clock_t start = std::clock(); // of all threads, whatever else the machine does
+    const std::clock_t start = std::clock(); // counts all threads and no other process
     const FitResult fit = fit_reradiation(data.data, settings);
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     const RecoveryError error =

@@ -1,9 +1,9 @@
-// What specialising the kernels to a scene saves, as a Markdown table: every example scene as it
-// is, with all features, and with every wavelength sampled. Kernels are built anew in an empty
-// cache; seconds are ratios to the scene as it is, medians of alternating turns. Arguments: scene
-// files; none: those of tools/examples. Exits with 3 when two images of a scene differ by more than
-// three standard errors of their tile means (Sidak). A second table has the price of every feature
-// alone: the reference study, which needs few, with one more at a time.
+// Prints what specialising the kernels to a scene saves, as a Markdown table: every example scene
+// as it is, with all features, and with every wavelength sampled. Kernels are built anew in an
+// empty cache; seconds are ratios to the scene as it is, medians of alternating turns. Arguments:
+// scene files; none: those of tools/examples. Exits with 3 when two images of a scene differ by
+// more than three standard errors of their tile means (Sidak). A second table has the price of
+// every feature alone: the reference study, which needs few, with one more at a time.
 #include "host/render/plan/render_features.h"
 #include "reradiant/device.h"
 #include "reradiant/render.h"
@@ -51,7 +51,7 @@ Scene small_scene(const fs::path& file) {
     return scene;
 }
 
-/// What a scene does not need and is rendered with all the same.
+/// The things that a scene does not need and that it is rendered with all the same.
 enum class Extra { Nothing, Features, Wavelengths };
 
 RenderOptions with_extra(Extra extra) {

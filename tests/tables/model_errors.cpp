@@ -53,7 +53,7 @@ MeasureRequest request_for(Model model, bool hemispherical) {
     return request;
 }
 
-/// Nothing where the model refuses the material.
+/// Measures a material by a model; returns nothing where the model refuses the material.
 std::optional<Sums> measured(const Material& material, Model model, bool hemispherical) {
     try {
         return sums_of(measure_material(material, request_for(model, hemispherical)));

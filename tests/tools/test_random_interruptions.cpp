@@ -80,7 +80,8 @@ protected:
         EXPECT_EQ(json("out.json").at("rays"), json("whole.json").at("rays"));
     }
 
-    /// What the checkpoint holds; 0 when every interruption came before the first one.
+    /// Returns the samples a pixel that the checkpoint holds; 0 when every interruption came before
+    /// the first one.
     int samples_kept() const {
         const std::string kept = file_bytes(folder / "out.exr.checkpoint");
         if (kept.empty())

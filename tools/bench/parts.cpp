@@ -120,7 +120,7 @@ void run(benchmark::State& state, const Study& study) {
     state.counters["rays/path"] =
         static_cast<double>(result.rays) / static_cast<double>(result.paths);
     state.counters["device_MB"] = 1e-6 * static_cast<double>(result.device_bytes);
-    state.counters["peak_MB"] = 1e-3 * peak_kilobytes(); // of the process so far
+    state.counters["peak_MB"] = 1e-3 * peak_kilobytes(); // the peak of the process so far
 }
 
 int argument(const benchmark::State& state) {

@@ -1,6 +1,6 @@
-// How much more a render costs than its rays: renders a scene, records every ray, and lets Embree
-// trace them alone. One line a number of bands, medians over repetitions that take turns, so that
-// ratios hold on a machine that others use too.
+// Measures how much more a render costs than its rays: renders a scene, records every ray, and lets
+// Embree trace them alone. Prints one line for each number of bands: medians over repetitions that
+// take turns, so that ratios hold on a machine that others use too.
 #include "host/geometry/geometry.h"
 #include "host/render/wavefront/render_hooks.h"
 #include "reradiant/device.h"

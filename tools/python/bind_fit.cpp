@@ -27,7 +27,7 @@ namespace {
 
 using DataPointer = std::shared_ptr<BispectralData>;
 
-/// What a fit needs for its report, too.
+/// A fit and the data that it was made of, which its report shows too.
 struct Fit {
     BispectralData data;
     FitResult result;

@@ -93,7 +93,7 @@ Vector diagonal_of(const ReradiationMatrix& matrix) {
     return diagonal;
 }
 
-/// What the diagonal holds beside the terms' own fluorescence within a cell.
+/// Returns what the diagonal holds beside the terms' own fluorescence within a cell.
 Vector reflectance_beside(const FitResult& result, const std::vector<Term>& terms) {
     std::vector<Fluorophore> fluorophores;
     for (const Term& term : terms)

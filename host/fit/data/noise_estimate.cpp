@@ -51,7 +51,8 @@ Vector difference(int order) {
     return weights;
 }
 
-/// What fewer places than were asked for say; signal only adds to the others.
+/// Estimate of the noise from fewer places than were asked for. It is infinite, so that any other
+/// estimate is lower: that one is taken, since signal only adds to an estimate.
 constexpr double nothing_seen = std::numeric_limits<double>::infinity();
 
 /// Noise seen through differences with these weights along columns and rows.
@@ -68,7 +69,7 @@ double noise_of_differences(const Matrix& value, const Matrix& used, const Vecto
     return normal_of_median * median(sizes) / (down.norm() * right.norm());
 }
 
-/// What is left of neighbouring columns when one is a multiple of the other.
+/// Returns the noise that is left of neighbouring columns when one is a multiple of the other.
 double noise_of_proportion(const Matrix& value, const Matrix& used) {
     std::vector<double> sizes;
     for (Eigen::Index i = 0; i + 1 < value.cols(); ++i) {

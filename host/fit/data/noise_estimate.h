@@ -11,7 +11,7 @@ namespace reradiant {
 struct EntryErrors {
     Eigen::MatrixXd value; ///< the data, with a mean where noise below zero was cut off
     Eigen::MatrixXd sigma; ///< of every entry, used or not; positive
-    /// What rounding does to neighbouring entries alike, standard deviation; zero where noise of
+    /// Standard deviation of what rounding does to neighbouring entries alike; zero where noise of
     /// half a step or more makes it different for each.
     Eigen::MatrixXd shared_rounding;
     double noise = 0.0;        ///< median of `sigma` over the used entries

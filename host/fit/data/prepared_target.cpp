@@ -72,7 +72,8 @@ void read_diagonal(const BispectralData& data, const Matrix& sigma, PreparedTarg
             fmt::format("{} diagonal entries below 0 or above 1 were moved to that limit", moved));
 }
 
-/// What every column may emit: all photons, and those that the diagonal as measured has not taken.
+/// Sets the photons that every column may emit: all, and those that the diagonal as measured has
+/// not taken.
 void set_photon_limits(PreparedTarget& prepared) {
     FitTarget& target = prepared.target;
     target.budget = Eigen::VectorXd::Constant(prepared.diagonal.size(), 1.0 / target.scale);
@@ -85,9 +86,9 @@ void set_photon_limits(PreparedTarget& prepared) {
         }
 }
 
-/// Whether entries lie so far below zero that noise cannot be the reason: 1 % of those used beyond
-/// three standard errors, where normal noise leaves 0.13 %. Then an instrument's dark signal is
-/// off, and no model that emits nothing negative can follow.
+/// Returns true when entries lie so far below zero that noise cannot be the reason: 1 % of those
+/// used beyond three standard errors, where normal noise leaves 0.13 %. Then an instrument's dark
+/// signal is off, and no model that emits nothing negative can follow.
 bool is_dark_signal_off(const Matrix& value, const Matrix& used, double noise) {
     constexpr double share = 0.01, fewest = 5.0, beyond = 3.0;
     const double below =

@@ -21,7 +21,7 @@ constexpr double smallest_step = 1e-6;
 
 struct Sizes {
     std::vector<double> all, levels; ///< sorted, without zeros; `levels` are distinct
-    double error = 0.0;              ///< of the numbers themselves, relative
+    double error = 0.0;              ///< relative error of the numbers themselves
 
     explicit Sizes(const Matrix& value) {
         bool is_single = true;

@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 
 /// Steps that each start is given at first.
 constexpr int first_steps = 12;
-/// Of both curves of a term.
+/// Fewest knots of a term, over both its curves.
 constexpr std::size_t fewest_knots = 4;
 
 /// Functions of both curves.
@@ -189,8 +189,8 @@ FittedCandidate by_width(const FitTarget& target, const FactorFitter& fitter,
     return best;
 }
 
-/// Whether a candidate explains what another, whose residuals are not noise, does not: then the
-/// evidence, which takes residuals for noise, is no judge.
+/// Returns true when a candidate explains what another, whose residuals are not noise, does not:
+/// then the evidence, which takes residuals for noise, is no judge.
 bool leaves_clearly_less(const FittedCandidate& candidate, const FittedCandidate& other,
                          const FitTarget& target) {
     constexpr double clearly = 0.8;

@@ -136,14 +136,14 @@ private:
     const PhotonPenalty& penalty_;
 };
 
-/// Where data determine a coefficient, its values are about 1 (the data's peak is 1 and both curves
-/// of a term are equally long). Where they do not, in columns that hold next to nothing that the
-/// term emits, a prior of this width keeps it from growing without bound. In all it adds about 2
-/// to the chi squared.
+/// Width of the prior of a coefficient. Where data determine a coefficient, its values are about 1
+/// (the data's peak is 1 and both curves of a term are equally long). Where they do not, in columns
+/// that hold next to nothing that the term emits, a prior of this width keeps it from growing
+/// without bound. In all it adds about 2 to the chi squared.
 constexpr double prior_width = 10.0;
 /// Prior of the second differences of a curve that holds lines of one band, on any grid.
 constexpr double bend_of_a_line = 2.0;
-/// Of a second difference.
+/// Weights of three successive values in their second difference.
 constexpr std::array bend_weights = {1.0, -2.0, 1.0};
 
 /// coefficient / prior_width for the K coefficients of a block.

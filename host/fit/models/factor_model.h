@@ -27,8 +27,8 @@ public:
                 const SmoothBasis& excitation, const PhotonPenalty& penalty, RobustLoss loss,
                 double bend_width);
 
-    /// For molecular bands, whose second differences on 10 nm reach 0.3 at a peak and are less
-    /// elsewhere, and for lines, which have 2 on any grid.
+    /// Values of bend_width for molecular bands, whose second differences on 10 nm reach 0.3 at a
+    /// peak and are less elsewhere, and for lines, which have 2 on any grid.
     static constexpr double bend_step_nm = 10.0, bend_of_bands = 0.1;
     static constexpr double bend_of_lines = std::numeric_limits<double>::infinity();
 
@@ -61,12 +61,13 @@ public:
     void balance(Eigen::VectorXd& parameters) const;
 
 private:
-    /// Of the emission, then of the excitation, each with its grid.
+    /// Returns the basis of the emission, then that of the excitation, each with its grid.
     std::array<std::pair<const SmoothBasis&, const WavelengthGrid&>, 2> bases() const {
         return {{{emission_, target_.emission}, {excitation_, target_.excitation}}};
     }
 
-    /// Of a basis's coefficients; nothing for functions that are not evenly spaced.
+    /// Returns the prior's standard deviation of second differences of a basis's coefficients;
+    /// nothing for functions that are not evenly spaced.
     std::optional<double> bend_width(const SmoothBasis& basis, const WavelengthGrid& grid) const;
 
     const FitTarget& target_;

@@ -58,7 +58,7 @@ FactorCurves random_start(const FitTarget& target, int rank, std::mt19937& rando
     FactorCurves start{Matrix(target.value.rows(), rank), Matrix(target.value.cols(), rank)};
     for (Matrix* factor : {&start.emission, &start.excitation})
         for (double& entry : factor->reshaped())
-            entry = size * static_cast<double>(random()) * 0x1.0p-32; // the same everywhere
+            entry = size * static_cast<double>(random()) * 0x1.0p-32; // the same in any library
     return start;
 }
 

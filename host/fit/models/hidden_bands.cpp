@@ -16,7 +16,7 @@ constexpr double told_share = 0.01, known_share = 0.001;
 /// Rise of the chi squared by a filled band: three standard errors.
 constexpr double largest_objection = 9.0;
 
-/// Which bands of a curve the used entries tell about.
+/// `BandKnowledge` says which bands of a curve the used entries tell about.
 struct BandKnowledge {
     std::vector<bool> hidden; ///< next to nothing
     std::vector<bool> known;  ///< enough to go on from: 0.1 % of what they tell about the best band
@@ -66,7 +66,7 @@ double filled(const Vector& curve, const std::vector<bool>& known, Eigen::Index 
                      : continued(curve, known, band, right, 1);
 }
 
-/// Of the data and of the diagonal.
+/// Returns the misfit of the curves to the data and to the diagonal.
 double misfit(const FitTarget& target, const FactorCurves& curves) {
     const Matrix matrix =
         (curves.emission * curves.excitation.transpose()).cwiseProduct(target.allowed);

@@ -36,7 +36,7 @@ Sparse weighted_jacobian(const TermModel& model, const Vector& at, const FitTarg
     return weights.asDiagonal() * Sparse(model.entry_jacobian(at).sparseView());
 }
 
-/// Of a positive definite matrix.
+/// Returns the logarithm of the determinant of a positive definite matrix.
 double log_determinant(const Matrix& matrix) {
     return 2.0 * Matrix(Eigen::LLT<Matrix>(matrix).matrixL()).diagonal().array().log().sum();
 }

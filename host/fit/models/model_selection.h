@@ -8,7 +8,7 @@
 
 namespace reradiant {
 
-/// What is known of the noise when models are compared.
+/// `Evidence` says what is known of the noise when models are compared.
 enum class Evidence {
     KnownNoise,    ///< standard errors came with the data
     EstimatedNoise ///< they were estimated, so their scale is uncertain, too
@@ -38,17 +38,19 @@ struct FittedCandidate {
     std::vector<int> emission_knots, excitation_knots; ///< see FitResult
 };
 
-/// Of noise that was estimated from the data, with the error that such an estimate has.
+/// Largest reduced chi squared of noise that was estimated from the data, with the error that such
+/// an estimate has.
 inline constexpr double largest_reduced_chi_squared = 2.0;
 
 /// Data less the numbers that they determine rather than a prior; at least 1.
 double degrees_of_freedom(const FittedCandidate& candidate, const FitTarget& target);
 
-/// Whether residuals may be noise: they are no larger than it, or their reduced chi squared is at
-/// most largest_reduced_chi_squared, or five standard deviations above 1 for so many degrees of
-/// freedom.
+/// Returns true when residuals may be noise: they are no larger than it, or their reduced chi
+/// squared is at most largest_reduced_chi_squared, or five standard deviations above 1 for so many
+/// degrees of freedom.
 bool residuals_are_noise(double chi_squared, double data, double freedom);
-/// The same of a candidate, by a tenth less, so that one that passes is not refused in the end.
+/// Returns true when the residuals of a candidate may be noise, with limits lower by a tenth, so
+/// that one that passes is not refused in the end.
 bool residuals_are_noise(const FittedCandidate& candidate, const FitTarget& target);
 
 /// No fluorescence at all: what every model is compared with.

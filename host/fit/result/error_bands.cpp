@@ -17,7 +17,7 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-constexpr double determined = 1e-7; ///< of the largest singular value
+constexpr double determined = 1e-7; ///< smallest share of the largest singular value
 constexpr double held_beyond = 2.0; ///< standard errors
 /// So many data an estimate of the noise from neighbours counts as beside the residuals, which say
 /// little where nearly as many numbers are fitted as there are data.

@@ -44,8 +44,8 @@ struct NormalisedCurves {
 NormalisedCurves normalised_curves(const TermModel& model, const Eigen::VectorXd& parameters,
                                    const Covariance& covariance, const FitTarget& target);
 
-/// What every term emits, with errors from the covariance. `jacobian` is the model's
-/// entry_jacobian.
+/// Returns the photons that every term emits, with errors from the covariance. `jacobian` is the
+/// model's entry_jacobian.
 EmittedPhotons emitted_photons(const TermModel& model, const Eigen::VectorXd& parameters,
                                const Eigen::MatrixXd& jacobian, const Covariance& covariance,
                                const FitTarget& target);

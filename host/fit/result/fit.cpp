@@ -70,7 +70,7 @@ void set_error_bands(const FittedCandidate& candidate, const PreparedTarget& pre
                       prepared.noise_is_estimated, prepared.errors ? &*prepared.errors : nullptr);
     result.sigma = prepared.target.scale *
                    covariance.sigma(jacobian).reshaped(result.sigma.rows(), result.sigma.cols());
-    // Where a whole column is missing, the model only bridges its neighbours.
+    // Errors are unknown where a whole column is missing: the model only bridges its neighbours.
     for (Eigen::Index i = 0; i < result.data.cols(); ++i)
         if ((result.data.col(i).array() != result.data.col(i).array()).all())
             result.sigma.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -120,7 +120,8 @@ void take_terms(const BispectralData& data, const FittedCandidate& candidate,
     set_error_bands(candidate, prepared, settings, result);
 }
 
-/// What entries share does not average out over them; so much more than their own error.
+/// Adds to the standard errors what entries share, as far as it exceeds their own error: it does
+/// not average out over them.
 void add_shared_errors(const PreparedTarget& prepared, Matrix& sigma) {
     const FitTarget& target = prepared.target;
     const Matrix all = prepared.errors->entry_variance();

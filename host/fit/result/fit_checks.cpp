@@ -32,13 +32,14 @@ double anti_stokes_share(const ReradiationMatrix& matrix) {
 constexpr double data_of_an_estimate = 6.0;
 constexpr double certain_noise = std::numeric_limits<double>::infinity();
 
-/// By which the square of a noise may be underestimated that so many data tell: three standard
-/// errors.
+/// Returns the factor by which the square of a noise may be underestimated when it comes from so
+/// many data: three standard errors.
 double largest_factor_of(double data) {
     return 1.0 + 3.0 * std::sqrt(2.0 / data);
 }
 
-/// What every column leaves to its diagonal, which is still zero: energy and photons.
+/// Returns what every column leaves to its diagonal, which is still zero, within the balances of
+/// energy and of photons.
 Eigen::VectorXd room_for_diagonal(const ReradiationMatrix& matrix) {
     const ColumnBalance balance = column_balance(matrix);
     Eigen::VectorXd room(matrix.excitation.count);

@@ -16,7 +16,7 @@ void pass_diagonal(const PreparedTarget& prepared, FitResult& result);
 /// Error figures of the model against the data, as `fit --json` has them.
 void measure_errors(const PreparedTarget& prepared, FitResult& result);
 
-/// What rounding does to neighbouring entries alike, into the standard errors: a fit does not
+/// Adds to the standard errors what rounding does to neighbouring entries alike: a fit does not
 /// average it out.
 void add_rounding(const PreparedTarget& prepared, FitResult& result);
 

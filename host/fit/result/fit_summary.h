@@ -6,7 +6,7 @@
 
 namespace reradiant {
 
-/// How a fit went and what it found besides the matrix: what `fit --json` writes.
+/// Returns what `fit --json` writes: how a fit went, and what it found besides the matrix.
 nlohmann::ordered_json fit_summary(const FitResult& result);
 
 } // namespace reradiant

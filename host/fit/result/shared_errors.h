@@ -15,10 +15,10 @@ struct SharedErrors {
     /// dM of one standard error of what else is uncertain, (emission, excitation).
     std::vector<Eigen::MatrixXd> directions;
 
-    /// Of every entry of M, (emission, excitation).
+    /// Returns the variance of every entry of M, (emission, excitation).
     Eigen::MatrixXd entry_variance() const;
-    /// A root, covariance = root root^T, for quantities that are gain (quantities, entries of M in
-    /// column-major order) times M.
+    /// Returns a root of the covariance, root root^T, of quantities that are gain (quantities,
+    /// entries of M in column-major order) times M.
     Eigen::MatrixXd root(const Eigen::MatrixXd& gain) const;
 };
 

@@ -26,7 +26,8 @@ ModelFit minimise_within_budget(const FittedModel& model, const FitTarget& targe
                                 std::chrono::steady_clock::time_point begin) {
     ModelFit fit;
     fit.parameters = start;
-    // As stiff as the data of a column together, so that the first round is neither deaf nor stuck.
+    // The penalty is as stiff as the data of a column together, so that the first round is neither
+    // deaf nor stuck.
     const double strength = 10.0 * target.weight.squaredNorm() /
                             static_cast<double>(std::max<Eigen::Index>(1, target.value.cols()));
     for (int round = 0; round < most_rounds; ++round) {

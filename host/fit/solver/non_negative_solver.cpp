@@ -240,7 +240,7 @@ private:
     SolveTrace trace_;
     int idle_ = 0;
     Vector kept_start_;
-    double seconds_before_ = 0.0; ///< of an earlier run
+    double seconds_before_ = 0.0; ///< seconds that an earlier run took
 };
 
 } // namespace

@@ -15,7 +15,7 @@ class Problem;
 
 namespace reradiant {
 
-/// How the linear systems of a step are solved.
+/// `LinearAlgebra` says how the linear systems of a step are solved.
 struct LinearAlgebra {
     enum class Type { DenseNormal, SparseNormal } type = Type::DenseNormal;
 };

@@ -27,9 +27,10 @@ struct SolveState {
 class SolveJournal {
 public:
     SolveJournal() = default;
-    /// Of an earlier run. Input Error for what is none.
+    /// Reads the journal of an earlier run. Input Error for JSON that is no journal.
     explicit SolveJournal(const nlohmann::json& json);
-    /// Of this and all its branches. Not while they run, but by `after_step`.
+    /// Returns this journal and all its branches as JSON. While they run, only `after_step` may
+    /// call it.
     nlohmann::json json() const;
 
     /// The next minimisation, as far as the earlier run came with it, or from its start. Run-time
@@ -46,7 +47,7 @@ public:
     void set_after_step(std::function<void()> after_step);
 
 private:
-    /// What all branches have in common.
+    /// `Shared` holds what all branches have in common.
     struct Shared {
         std::mutex mutex;
         std::function<void()> after_step;

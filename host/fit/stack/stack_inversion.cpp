@@ -64,7 +64,8 @@ std::vector<Matrix> block_weights(BispectralData& data, bool& is_estimated) {
     return weights;
 }
 
-/// What no substrate sends upwards: known to be zero.
+/// Sets emission below the excitation to zero without error, since no substrate sends it upwards
+/// unless it has anti-Stokes emission.
 void darken_impossible(const BispectralData& data, UncertainMatrix& under) {
     for (int i = 0; i < data.excitation.count; ++i)
         for (int o = 0; o < data.emission.count; ++o)
@@ -92,7 +93,8 @@ private:
     bool anti_stokes_;
 };
 
-/// What the uncertainty of the stack's numbers does to every entry, direction by direction.
+/// Returns how much the uncertainty of the stack's numbers changes every entry, direction by
+/// direction.
 std::vector<Matrix> stack_directions(const UnknownStack& unknown, const UnknownStackFit& fit,
                                      const Inversion& inversion) {
     std::vector<Matrix> directions;

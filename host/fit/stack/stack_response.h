@@ -35,10 +35,11 @@ UncertainMatrix under_the_stack(const BispectralData& data, const StackResponse&
 /// A matrix and its errors.
 struct BareMatrix {
     Eigen::MatrixXd value; ///< (emission, excitation), NaN where it was not measured
-    /// What an entry's own error of B makes of it. The rest is shared: it moves rows and columns as
-    /// wholes, which sums of products of curves follow exactly, so that it must not weaken weights.
+    /// Variance of an entry that comes from its own error of B. The rest is shared: it moves rows
+    /// and columns as wholes, which sums of products of curves follow exactly, so that it must not
+    /// weaken weights.
     Eigen::MatrixXd own_variance;
-    SharedErrors errors; ///< all of it, without directions
+    SharedErrors errors; ///< all errors, without directions
     int guessed = 0;     ///< bands whose reflectance had to be guessed
 };
 

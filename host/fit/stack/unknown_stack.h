@@ -18,8 +18,8 @@ public:
     Eigen::Index count() const { return static_cast<Eigen::Index>(numbers_.size()); }
     LayerStack stack(const Eigen::VectorXd& numbers) const;
     std::string name(Eigen::Index number) const;
-    /// In the units of a material file: the thickness, the factor of the absorption, the addend of
-    /// the IOR.
+    /// Returns the number's value in the units of a material file: the thickness, the factor of the
+    /// absorption, the addend of the IOR.
     double value(Eigen::Index number, double at) const;
     /// Derivative of `value`.
     double slope(Eigen::Index number, double at) const;

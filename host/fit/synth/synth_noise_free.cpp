@@ -121,9 +121,9 @@ Eigen::MatrixXd cut(const Eigen::MatrixXd& values, const WavelengthGrid& bands,
                         recipe.excitation.count);
 }
 
-/// What the two bandpasses see of a fine matrix. Fluorescence is smoothed along both axes. The
-/// reflectance is that of the light which both let through: an instrument is calibrated on a
-/// white diffuser, and its overlap beside the diagonal is what `spill` says.
+/// `Bandpasses` gives what the two bandpasses see of a fine matrix. Fluorescence is smoothed along
+/// both axes. The reflectance is that of the light which both let through: an instrument is
+/// calibrated on a white diffuser, and its overlap beside the diagonal is what `spill` says.
 class Bandpasses {
 public:
     Bandpasses(const SynthRecipe& recipe, const WavelengthGrid& fine)

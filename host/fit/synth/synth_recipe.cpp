@@ -15,8 +15,9 @@ namespace reradiant {
 namespace {
 
 constexpr std::size_t most_fluorophores = 4;
-constexpr std::size_t most_directions = 64; // of one angle
-/// Where bands of dyes lie, and the narrowest that the tables of spectrum_of_bands resolve.
+constexpr std::size_t most_directions = 64; // values that a recipe gives of one angle
+/// Ranges that bands of dyes lie in; widths begin with the narrowest that the tables of
+/// spectrum_of_bands resolve.
 const NumberRange peak_range = NumberRange::within(200.0, 1200.0);
 const NumberRange width_nm_range = NumberRange::within(2.0, 500.0);
 const NumberRange width_per_cm_range = NumberRange::within(50.0, 20000.0);

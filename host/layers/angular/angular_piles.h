@@ -9,11 +9,11 @@
 
 namespace reradiant {
 
-/// Piles of smooth interfaces and clear slabs between the angular cells of what scatters above and
-/// below them. Integrated over the invariant n^2 sin^2 with exact edges, weights that sum to 1: a
-/// lossless pile loses nothing to the quadrature.
+/// These are piles of smooth interfaces and clear slabs between the angular cells of what scatters
+/// above and below them. They are integrated over the invariant n^2 sin^2 with exact edges and
+/// weights that sum to 1: a lossless pile loses nothing to the quadrature.
 
-/// Between two grids.
+/// A `CellPile` is a pile between two grids.
 struct CellPile {
     Eigen::MatrixXd down; ///< share of an upper cell's flux, (lower cells, upper cells)
     Eigen::MatrixXd up;   ///< (upper cells, lower cells)
@@ -21,7 +21,7 @@ struct CellPile {
 };
 CellPile pile_between(const SmoothStack& media, const AngularGrid& upper, const AngularGrid& lower);
 
-/// Between the air and the topmost grid.
+/// An `AirPile` is the pile between the air and the topmost grid.
 struct AirPile {
     Eigen::VectorXd through; ///< share of a cell's flux that gets out
     Eigen::VectorXd back;    ///< share that comes back
@@ -32,7 +32,7 @@ AirPile air_pile(const SmoothStack& media, const AngularGrid& grid);
 /// and by which it sends it out.
 using SubstrateWeight = std::function<double(double cosine)>;
 
-/// Between the lowest grid and the substrate.
+/// A `SubstratePile` is the pile between the lowest grid and the substrate.
 struct SubstratePile {
     Eigen::VectorXd through;   ///< share of a cell's flux that gets there, weighted
     Eigen::VectorXd back;      ///< share that comes back

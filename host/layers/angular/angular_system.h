@@ -13,19 +13,20 @@ namespace reradiant {
 /// the operators resolve (5e-5 of IOR; below that it neither reflects nor deflects visibly).
 bool is_rough_interface(const StackValues& stack, std::size_t index);
 
-/// What becomes of light, by cell of direction; the substrate is black.
+/// `AngularShares` says where light ends up, by the cell of direction that it comes through. The
+/// substrate is black.
 struct AngularShares {
     Eigen::VectorXd to_substrate; ///< share that reaches the substrate
     Eigen::VectorXd to_air;       ///< share that leaves again into the air
     Eigen::VectorXd lost;         ///< share lost to single scattering
 };
 
-/// What becomes of light that comes down to the first scatterer, by cell of its upper side, and of
-/// light that the substrate emits.
+/// An `AngularResponse` says where light ends up that comes down to the first scatterer, by cell of
+/// its upper side, and where light ends up that the substrate emits.
 struct AngularResponse {
     AngularShares incoming;
-    /// Of light that leaves a slab downwards that is the first scatterer, by the same cells; empty
-    /// for a rough interface.
+    /// If the first scatterer is a slab, the shares of the light that leaves it downwards, by the
+    /// same cells; empty for a rough interface.
     AngularShares passed;
     double internal_reflectance = 0.0;
     double escape = 0.0; ///< share of the substrate's flux that leaves into the air
@@ -36,11 +37,12 @@ struct AngularResponse {
 /// at once by one LU of the value function (the adjoint), on the cells of both sides of them all.
 class AngularSystem {
 public:
-    /// The first `count` layers of the stack; something of them scatters.
+    /// Sets up the first `count` layers of the stack, of which something must scatter.
     AngularSystem(const StackValues& stack, std::size_t count);
 
-    /// `weight`: by which the substrate weighs what it sends out and what it gets. With 1, light is
-    /// emitted diffusely and all of it counts.
+    /// Solves for all interreflections. `weight` is the factor with which the substrate weighs both
+    /// what it sends out and what it receives; with 1, light is emitted diffusely and all of it
+    /// counts.
     AngularResponse solve(const SubstrateWeight& weight = [](double) { return 1.0; }) const;
     /// Media and slabs from the air to the medium above the first scatterer.
     const SmoothStack& top() const { return top_media_; }
@@ -57,8 +59,8 @@ private:
     struct Scatterer {
         AngularGrid upper, lower;
         Eigen::MatrixXd response;
-        bool loses = false; ///< what the response lacks is lost, not absorbed
-        double depth = 0.0; ///< of a slab, scattering included
+        bool loses = false; ///< flux that `response` lacks is lost, not absorbed
+        double depth = 0.0; ///< optical depth of a slab, scattering included
     };
 
     void add_interface(const StackValues& stack, std::size_t index);

@@ -62,7 +62,7 @@ private:
     Eigen::VectorXd passed_, scattered_;
 };
 
-/// Scattering counted as absorption: what is left was not scattered.
+/// Counts scattering as absorption: the light that is left was not scattered.
 StackValues without_scattered(StackValues stack) {
     for (LayerValues& layer : stack) {
         layer.tau += layer.tau_scattering;
@@ -130,8 +130,8 @@ private:
         double transmission, specular, lost;
     };
 
-    /// Through the smooth interfaces at the top exactly, then by the fitted functions of the
-    /// cosine above the first scatterer.
+    /// Returns the shares of light from a direction in air: through the smooth interfaces at the
+    /// top exactly, then by the fitted functions of the cosine above the first scatterer.
     Shares shares(double cosine) const {
         const double c = std::clamp(cosine, 0.0, 1.0);
         const SmoothResponse in = smooth_response(top_, 1.0, c);

@@ -29,8 +29,8 @@ struct OrenNayarWeights {
 OrenNayarWeights oren_nayar_weights(double sigma, double lowest_ior, const kernels::Vec3& wi,
                                     const kernels::Vec3& wo);
 
-/// Integrals of the two weights times T(wo) cos(wo) / (pi n_k^2) over outgoing directions: what M
-/// and B are multiplied by in a directional-hemispherical reflectance, T(wi) left out.
+/// Returns the integrals of the two weights times T(wo) cos(wo) / (pi n_k^2) over outgoing
+/// directions: the factors of M and B in a directional-hemispherical reflectance, T(wi) left out.
 /// `transmission` is T by cosine in air, `breaks` the pieces of its quadrature over that cosine.
 OrenNayarWeights oren_nayar_hemispherical(double sigma, double lowest_ior, double cos_i,
                                           const std::vector<double>& breaks,

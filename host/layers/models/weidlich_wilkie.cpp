@@ -15,8 +15,8 @@ using kernels::Vec3;
 
 namespace {
 
-/// Both directions on their way down, in a medium of index `ior`, and what the parts above let
-/// through each way; both are 0 once one of the directions was totally reflected.
+/// A `Descent` holds both directions on their way down, in a medium of index `ior`, and what the
+/// parts above let through each way; both are 0 once one of the directions was totally reflected.
 struct Descent {
     Vec3 wi, wo;
     double ior = 1.0;
@@ -38,8 +38,8 @@ Vec3 refract_macroscopic(const Vec3& w, double eta) {
     return kernels::vec3(w.x / eta, w.y / eta, kernels::fresnel_cos_transmitted(w.z, eta));
 }
 
-/// T12 on the way in, t = (1 - G) + T21 G on the way out. T21 at the refracted direction equals T12
-/// at the direction above.
+/// Crosses an interface: T12 on the way in, t = (1 - G) + T21 G on the way out. T21 at the
+/// refracted direction equals T12 at the direction above.
 void cross_interface(const LayerValues& layer, Descent& d) {
     double cos_i = d.wi.z, cos_o = d.wo.z, g = 1.0;
     if (layer.alpha > 0.0 && layer.film.thickness_nm == 0.0) {

@@ -13,7 +13,7 @@ namespace reradiant {
 
 namespace {
 
-/// A direction in air on its way down, macroscopically.
+/// A `Way` follows light down from a direction in air, refracted at the macroscopic normal.
 struct Way {
     double cosine, ior = 1.0, through = 1.0;
 
@@ -31,7 +31,7 @@ double mean_of(const CosineTable& table) {
     return integrate_sin2(0.0, 1.0, 64, [&](double c) { return 2.0 * c * table(c); });
 }
 
-/// V m e of a part with share `own` under all of `above`.
+/// Returns V m e of a part whose share is `own` beneath all of `above`.
 CosineTable seen_from_air(const StackValues& above, const CosineTable& own) {
     const double mean = mean_of(own);
     if (!(mean > 0.0))

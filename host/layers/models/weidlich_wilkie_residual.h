@@ -7,17 +7,18 @@
 
 namespace reradiant {
 
-/// What `multiple` adds to model A at one wavelength: the light that rough interfaces, flakes and a
-/// conductor substrate send back after more than one event at their facets, in the reciprocal form
-/// of adding's residual (Kelemen and Szirmay-Kalos 2001),
+/// A `WeidlichWilkieResidual` is what the scattering `multiple` adds to model A at one wavelength:
+/// the light that rough interfaces, flakes and a conductor substrate send back after more than one
+/// event at their facets, in the reciprocal form of adding's residual (Kelemen and Szirmay-Kalos
+/// 2001),
 ///
 ///   f = r(ci) r(co) / (pi average),  r = sum over parts of V(c) m(c') e,
 ///
-/// m(c') the part's own share (facet_interreflection.h) at the cosine above it, V(c) what the parts
-/// above let through one way at the normal of the surface, 1 - F and extinction and flakes, and e
-/// the share of the part's light that comes out: 2 integral V(c) m(c') c dc over m's own mean, as
-/// model A has no n^2 factors. An interface with nothing above it so reflects all that its operator
-/// says. It is zero for `single` and for smooth stacks.
+/// where m(c') is the part's own share (facet_interreflection.h) at the cosine above it, V(c) is
+/// what the parts above let through one way at the normal of the surface (1 - F, extinction and
+/// flakes), and e is the share of the part's light that comes out: 2 integral V(c) m(c') c dc over
+/// m's own mean, as model A has no n^2 factors. An interface with nothing above it thus reflects
+/// all that its operator says. The residual is zero for `single` and for smooth stacks.
 class WeidlichWilkieResidual {
 public:
     explicit WeidlichWilkieResidual(const StackValues& stack,

@@ -21,8 +21,8 @@ double cosine_mean(const Function& f) {
     return integrate_sin2(0.0, 1.0, 24, [&](double c) { return 2.0 * c * f(c); });
 }
 
-/// Kulla and Conty 2017, with both meetings after the first counted at the mean reflectance: (1 -
-/// E) F^2 Em / (1 - F (1 - Em)), Em the cosine-weighted mean of E.
+/// Follows Kulla and Conty 2017, with both meetings after the first counted at the mean
+/// reflectance: (1 - E) F^2 Em / (1 - F (1 - Em)), Em the cosine-weighted mean of E.
 std::vector<double> cavity_interreflection(const CosineTable& albedo, double reflectance) {
     const double mean = cosine_mean(albedo);
     const double scale = reflectance * reflectance * mean / (1.0 - reflectance * (1.0 - mean));
@@ -32,7 +32,7 @@ std::vector<double> cavity_interreflection(const CosineTable& albedo, double ref
     return values;
 }
 
-/// Every meeting at the mean reflectance.
+/// Counts every meeting at the mean reflectance.
 std::vector<double> smith_interreflection(const Eigen::MatrixXd& orders, double reflectance) {
     Eigen::VectorXd powers(orders.cols());
     for (Eigen::Index k = 0; k < powers.size(); ++k)
@@ -41,7 +41,7 @@ std::vector<double> smith_interreflection(const Eigen::MatrixXd& orders, double 
     return {values.data(), values.data() + values.size()};
 }
 
-/// Opaque facets whose reflectance is that of `reflector`.
+/// Returns the interreflection of opaque facets whose reflectance is that of `reflector`.
 template <typename Reflector>
 CosineTable opaque_interreflection(const Reflector& reflector, double ior_above) {
     const AddingTransport::Lobe lobe{reflector.distribution, reflector.alpha};
@@ -52,7 +52,8 @@ CosineTable opaque_interreflection(const Reflector& reflector, double ior_above)
                            : smith_interreflection(*facet_orders(lobe), mean));
 }
 
-/// Mean share of the lobe over each cell of the denser side, which operators do not keep.
+/// Returns the mean share of the lobe over each cell of the denser side, which operators do not
+/// keep.
 Eigen::VectorXd first_lobe_from_below(const InterfaceOperator& op) {
     RoughInterface once = op.interface;
     once.scattering = Scattering::Single;
@@ -92,7 +93,7 @@ CosineTable dielectric_interreflection(const RoughInterface& interface, bool fro
     return CosineTable(std::move(values));
 }
 
-/// Kept: a grey material asks for the same table at every wavelength.
+/// Keeps the tables: a grey material asks for the same one at every wavelength.
 CosineTable known_interreflection(const RoughInterface& interface, bool from_below) {
     using Key = std::tuple<double, Distribution, double, bool>;
     static std::mutex mutex;

@@ -8,12 +8,12 @@
 
 namespace reradiant {
 
-/// Light between the facets of an opaque rough surface that reflect everything, by how often it met
-/// them before it left: (CosineTable::nodes, orders), column k is the share that met k + 2; the
-/// last one holds all that met more often too. With the lobe's own albedo (one meeting) a row adds
-/// up to
-/// 1. From walks on the Smith microsurface (Heitz et al. 2016), ggx and beckmann; good to 1 % of
-/// itself. Kept, thread-safe.
+/// Returns how light between the facets of an opaque rough surface that reflect everything divides
+/// by the number of facets that it met before it left: (CosineTable::nodes, orders), where column k
+/// is the share that met k + 2 and the last column also holds all that met more. Together with the
+/// lobe's own albedo (one meeting) a row adds up to 1. The shares come from walks on the Smith
+/// microsurface (Heitz et al. 2016) for ggx and beckmann, and have a relative error of about 1 %.
+/// Results are kept for later calls; thread-safe.
 std::shared_ptr<const Eigen::MatrixXd> facet_orders(const AddingTransport::Lobe& lobe);
 
 } // namespace reradiant

@@ -4,12 +4,13 @@
 
 namespace reradiant {
 
-/// Reflectance (unit 1) of a facet of the interface on top of `layer` for unpolarised light that
-/// comes from a medium of IOR `ior_above` at cos_theta >= 0: Fresnel, or coherent where it bears a
-/// film.
+/// Returns the reflectance (unit 1) of a facet of the interface on top of `layer` for unpolarised
+/// light that comes from a medium of IOR `ior_above` at cos_theta >= 0: that of Fresnel, or the
+/// coherent one where the interface bears a film.
 double facet_reflectance(const LayerValues& layer, double ior_above, double cos_theta);
 
-/// The same of a conductor (or a flake) in a medium of IOR `ior_above`.
+/// Returns the reflectance (unit 1) of a facet of a conductor (or a flake) in a medium of IOR
+/// `ior_above`, for unpolarised light at cos_theta >= 0.
 double facet_reflectance(const ConductorValues& conductor, double ior_above, double cos_theta);
 
 } // namespace reradiant

@@ -12,7 +12,7 @@ namespace reradiant {
 
 namespace {
 
-/// IOR ratio in units of 1e-4, distribution, scattering, alpha.
+/// The key holds the IOR ratio in units of 1e-4, distribution, scattering and alpha.
 using OperatorKey = std::tuple<long, int, int, double>;
 
 OperatorKey key_of(const RoughInterface& interface, long eta_1e4) {
@@ -20,7 +20,8 @@ OperatorKey key_of(const RoughInterface& interface, long eta_1e4) {
             static_cast<int>(interface.scattering), interface.alpha};
 }
 
-/// A cache that cannot be written is no error: it only costs time.
+/// Writes an operator to the disk cache. A cache that cannot be written is no error: it only costs
+/// time.
 void keep(const InterfaceOperator& op, const std::filesystem::path& file, long eta_1e4) {
     try {
         write_interface_file(file, op, eta_1e4);
@@ -39,7 +40,7 @@ std::shared_ptr<const InterfaceOperator> exact_operator(RoughInterface interface
     return op;
 }
 
-/// Memory of operators; one computation at a time, so that a second thread finds the result.
+/// Keeps operators in memory. It computes one at a time, so that a second thread finds the result.
 class OperatorStore {
 public:
     std::shared_ptr<const InterfaceOperator> get(const RoughInterface& interface, long eta_1e4) {

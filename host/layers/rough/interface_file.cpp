@@ -17,7 +17,7 @@ namespace reradiant {
 
 namespace {
 
-/// Raise when the numbers or the layout of a stored operator change.
+/// This version must be raised when the numbers or the layout of a stored operator change.
 constexpr std::uint32_t format_version = 2;
 constexpr auto side = static_cast<std::size_t>(2 * interface_cells);
 

@@ -7,11 +7,12 @@
 
 namespace reradiant {
 
-/// Where the disk cache keeps the operator of an interface, whose IOR ratio is eta_1e4 / 10000.
+/// Returns the file in which the disk cache keeps the operator of an interface, whose IOR ratio is
+/// eta_1e4 / 10000.
 std::filesystem::path interface_file(const RoughInterface& interface, long eta_1e4);
 
-/// The operator that a file holds; nothing when there is no such file. One that is damaged, or of
-/// another interface or version, is nothing too, and a warning says so.
+/// Returns the operator that a file holds, or nothing when there is no such file. Also returns
+/// nothing, with a warning, for a file that is damaged or belongs to another interface or version.
 std::optional<InterfaceOperator> read_interface_file(const std::filesystem::path& file,
                                                      const RoughInterface& interface, long eta_1e4);
 

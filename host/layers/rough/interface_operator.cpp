@@ -44,8 +44,8 @@ double estimate_column(const InterfaceOperator& op, int cell, Eigen::VectorXd& c
     return lobe / rule.count;
 }
 
-/// Every entry estimated from both ends: the variance of the estimate from cell j is proportional
-/// to j's etendue, so weights are the other cell's etendue.
+/// Combines the estimates of every entry from both ends. The variance of the estimate from cell j
+/// is proportional to j's etendue, so each weight is the other cell's etendue.
 void symmetrise(Eigen::MatrixXd& matrix, const Eigen::VectorXd& e) {
     for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
         for (Eigen::Index i = 0; i < j; ++i) {

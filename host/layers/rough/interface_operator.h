@@ -27,7 +27,7 @@ struct InterfaceOperator {
     Eigen::VectorXd etendue() const;
 };
 
-/// Cells a side.
+/// Number of cells on each side.
 inline constexpr int interface_cells = 64;
 
 /// Computes the operator from lattice-sampled walks in every cell (parallel, the same whatever the
@@ -40,16 +40,17 @@ inline constexpr int interface_cells = 64;
 /// loses.
 InterfaceOperator compute_interface_operator(const RoughInterface& interface);
 
-/// The operator without its numbers: grids for an interface of this IOR ratio.
+/// Returns the operator without its numbers: the grids for an interface of this IOR ratio.
 InterfaceOperator empty_interface_operator(const RoughInterface& interface);
 
 /// Scales a symmetric non-negative matrix S to D S D with column sums `target`.
 void scale_symmetric(Eigen::MatrixXd& matrix, const Eigen::VectorXd& target);
 
-/// Operators by IOR ratio, from memory, from the disk cache (cache_directory()/interfaces), or
-/// computed. Ratios are rounded to 1e-4; those on a multiple of 0.01 are computed as they are,
-/// others interpolated cubically between multiples of 0.05 (0.01 below 1.1), so that a
-/// dispersive material costs a few operators and not one a wavelength. Thread-safe.
+/// Returns the operator of an interface from memory, from the disk cache
+/// (cache_directory()/interfaces), or computed. Ratios of IOR are rounded to 1e-4; those on a
+/// multiple of 0.01 are computed as they are, others interpolated cubically between multiples of
+/// 0.05 (0.01 below 1.1), so that a dispersive material costs a few operators and not one for each
+/// wavelength. Thread-safe.
 std::shared_ptr<const InterfaceOperator> interface_operator(const RoughInterface& interface);
 
 } // namespace reradiant

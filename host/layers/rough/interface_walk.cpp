@@ -26,7 +26,8 @@ double hashed_uniform(unsigned walk, unsigned stream, unsigned dimension) {
 
 using microsurface::negated;
 
-/// What one facet does to light that came from direction v (pointing away from the surface).
+/// A `Facet` says how one facet reflects and refracts light that came from direction v (pointing
+/// away from the surface).
 struct Facet {
     double reflectance;
     Vec3 reflected; ///< in the frame of v's medium

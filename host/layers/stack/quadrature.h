@@ -11,20 +11,22 @@ struct Quadrature {
     std::vector<double> nodes, weights;
 };
 
-/// Gauss-Legendre rule with `count` nodes, by Newton steps on the Legendre polynomial; kept.
-/// Thread-safe.
+/// Returns the Gauss-Legendre rule with `count` nodes, found by Newton steps on the Legendre
+/// polynomial and kept for later calls. Thread-safe.
 const Quadrature& gauss_legendre(int count);
 
-/// Integral of f over [from, to] by c = from + (to - from) sin^2 u with Gauss-Legendre in u: exact
-/// to 4e-12 with 64 nodes for integrands with square-root ends (critical cosines).
+/// Returns the integral of f over [from, to] by c = from + (to - from) sin^2 u with Gauss-Legendre
+/// in u: exact to 4e-12 with 64 nodes for integrands with square-root ends (critical cosines).
 template <typename Function>
 double integrate_sin2(double from, double to, int count, const Function& f);
 
-/// The same over consecutive pieces; `breaks` ascends and holds both ends.
+/// Integrates f over consecutive pieces, each as `integrate_sin2` does with `count` nodes; `breaks`
+/// ascends and holds both ends.
 template <typename Function>
 double integrate_pieces(const std::vector<double>& breaks, int count, const Function& f);
 
-/// Points within (0, 1), sorted, with 0 and 1 added; points closer than 1e-14 are merged.
+/// Returns the points within (0, 1), sorted, with 0 and 1 added; points closer than 1e-14 are
+/// merged.
 std::vector<double> breaks_between_0_and_1(std::vector<double> inner);
 
 template <typename Function>

@@ -4,10 +4,11 @@
 
 namespace reradiant {
 
-/// Input Error, naming the layer, for numbers out of physical range: every model asks first.
+/// Throws an input Error that names the layer for numbers out of physical range: every model calls
+/// this first.
 void check_stack(const StackValues& stack);
 
-/// The same of a conductor substrate.
+/// Throws an input Error for a conductor substrate whose numbers are out of physical range.
 void check_conductor(const ConductorValues& conductor);
 
 } // namespace reradiant

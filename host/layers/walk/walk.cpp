@@ -15,7 +15,8 @@ using Kind = WalkElement::Kind;
 
 namespace {
 
-/// What one walk carries: of all bands, or of the band that it is in.
+/// `Carried` holds the weights that one walk carries: those of all bands, or that of the band that
+/// the walk is in.
 class Carried {
 public:
     Carried(const WalkMaterial& material, std::optional<int> band)

@@ -11,10 +11,12 @@
 
 namespace reradiant {
 
-/// What one walk, or the mean over many, says of a material, by band.
+/// A `WalkTally` holds the estimates, by band, that one walk or the mean over many walks gives for
+/// a material.
 struct WalkTally {
-    /// `diffuse` reached the substrate: (bands, bands), rows = emission, of a fluorescent substrate
-    /// and (bands, 1), the diagonal, of any other. `specular` never did.
+    /// Light by whether it reached the substrate. `diffuse` did: its shape is (bands, bands), rows
+    /// = emission, for a fluorescent substrate, and (bands, 1), the diagonal, for any other.
+    /// `specular` did not.
     struct Parts {
         Eigen::MatrixXd diffuse;
         Eigen::VectorXd specular;
@@ -27,12 +29,12 @@ struct WalkTally {
     void set_zero();
 };
 
-/// One way that light takes through a material at a single wavelength at a time.
+/// A `WalkSample` is one path of light through a material, at a single wavelength at a time.
 struct WalkSample {
-    kernels::Vec3 w{};     ///< where it leaves into the air
-    int band = 0;          ///< at which wavelength
+    kernels::Vec3 w{};     ///< direction in which it leaves into the air
+    int band = 0;          ///< in which it leaves
     double weight = 0.0;   ///< BSDF times cosine over probability; 0: it did not leave
-    bool reached = false;  ///< the substrate
+    bool reached = false;  ///< true when it met the substrate
     bool is_delta = false; ///< smooth surfaces alone sent it there
 };
 
@@ -46,12 +48,12 @@ struct WalkSample {
 /// of it downwards, scattering in a slab, the diffuse substrate. Every path of light has one such
 /// last event, so that nothing is counted twice and no weights are needed.
 ///
-/// Where the stack is the same at all bands but for its absorption, one walk serves them all and
-/// carries their weights; elsewhere each excitation band has walks of its own, and the substrate
-/// draws the band of emission. Both give exactly the model's expectation, with any dispersion.
+/// One walk serves all bands and carries their weights when the stack differs between bands in its
+/// absorption only. Otherwise each excitation band has walks of its own, and the substrate draws
+/// the band of emission. Both give exactly the model's expectation, with any dispersion.
 class LayerWalk {
 public:
-    /// One band a wavelength. Input Error for numbers out of range.
+    /// Makes one band for each wavelength. Throws an input Error for numbers out of range.
     LayerWalk(const LayerStack& stack, const SubstrateValues& substrate,
               const std::vector<double>& wavelengths_nm);
 
@@ -69,8 +71,9 @@ public:
     /// are those of `reversed`.
     WalkSample sample(const kernels::Vec3& wi, int band, WalkRandom& random) const;
 
-    /// The material with light running backwards: eval(wi, wo)(lo, li) of one is eval(wo,
-    /// wi)(li, lo) of the other. Dispersion brings n^2 of the lowest slab at both wavelengths.
+    /// Returns the material with light running backwards: eval(wi, wo)(lo, li) of one is eval(wo,
+    /// wi)(li, lo) of the other. Under dispersion the reversal brings in n^2 of the lowest slab at
+    /// both wavelengths.
     LayerWalk reversed() const;
 
 private:

@@ -75,7 +75,7 @@ WalkElements elements_at(const StackValues& stack, const SubstrateValues& substr
     return elements;
 }
 
-/// Values with what walks that serve all bands may differ in left out.
+/// Returns the values without those in which bands that share a walk may differ.
 StackValues ways_of(StackValues stack) {
     for (LayerValues& layer : stack)
         layer.tau = 0.0;

@@ -10,12 +10,12 @@
 
 namespace reradiant {
 
-/// What light meets on its way down, from the air to the substrate.
+/// A `WalkElement` is one thing that light meets on its way down from the air to the substrate.
 struct WalkElement {
     enum class Kind { Surface, Slab, Flakes, Conductor, Diffuse };
     Kind kind = Kind::Surface;
     WalkSurface surface; ///< interface, flakes, conductor
-    double ior = 1.0;    ///< of the medium: of the slab, else of the one above
+    double ior = 1.0;    ///< IOR of the slab, or of the medium above any other element
     Eigen::ArrayXd tau;  ///< slab: depth of absorption at every band that is carried
     double tau_scattering = 0.0, anisotropy = 0.0;
     double coverage = 0.0; ///< flakes

@@ -12,11 +12,12 @@ namespace reradiant {
 
 namespace {
 
-/// Blocks are added in groups and these in pairs, in an order that threads do not change.
+/// Blocks are summed in groups, and the groups in pairs, in an order that does not depend on the
+/// threads.
 constexpr std::size_t groups = 16;
 constexpr std::uint64_t blocks_in_group = walk_blocks / groups;
-/// Seconds of walking between two pauses: interrupts are answered, waiting for the last thread
-/// costs little.
+/// Seconds of walking between two pauses: short enough to answer interrupts, and long enough that
+/// waiting for the last thread costs little.
 constexpr double seconds_at_a_time = 0.25;
 
 /// Calls f(array) for every array of a tally.
@@ -46,7 +47,8 @@ void for_arrays(WalkTally& to, const WalkTally& from, const Function& f) {
     f(to.lost, from.lost);
 }
 
-/// Successive blocks: sums of their totals and of the squares of these, and the block in progress.
+/// A group of successive blocks: the sums of their totals and of the squares of these, and the
+/// block in progress.
 struct BlockGroup {
     WalkTally sum, squares, block;
 
@@ -61,7 +63,7 @@ struct BlockGroup {
     }
 };
 
-/// All groups, walking in step.
+/// A `WalkRun` advances all groups in step.
 class WalkRun {
 public:
     WalkRun(const LayerWalk& walk, const kernels::Vec3& wi, std::span<const kernels::Vec3> wo,
@@ -73,7 +75,7 @@ public:
 
     bool is_done() const { return blocks_ == blocks_in_group; }
 
-    /// Runs so many walks in every group, but not beyond the block's end.
+    /// Runs `walks` walks in every group, but not beyond the end of the block.
     void advance(std::uint64_t walks) {
         const std::uint64_t end = std::min(block_size_, walks_ + walks);
         tbb::parallel_for(std::size_t{0}, groups, [&](std::size_t g) {
@@ -117,7 +119,7 @@ public:
         walks_ = state.walks;
     }
 
-    /// All groups together, pair by pair.
+    /// Returns the sum over all groups, which are added pair by pair.
     BlockGroup total() {
         for (std::size_t apart = 1; apart < groups; apart *= 2)
             for (std::size_t g = 0; g < groups; g += 2 * apart)

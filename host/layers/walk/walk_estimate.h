@@ -17,15 +17,16 @@ struct WalkEstimate {
 /// Walks are run in blocks, whose means give the standard errors (to 4 %).
 inline constexpr std::uint64_t walk_blocks = 256;
 
-/// How far an estimate is, exactly: blocks that every group of them has done, walks of the next
-/// one, and what they add up to. Numbers alone, to be kept in a file.
+/// A `WalkState` tells exactly how far an estimate has come: the blocks that every group of them
+/// has done, the walks of the next block, and what they add up to. It holds numbers alone, so that
+/// it can be kept in a file.
 struct WalkState {
     std::uint64_t blocks = 0, walks = 0;
     std::vector<double> numbers; ///< empty: nothing was done
 };
 
-/// Called between walks, a few times a second, and when all are done; `state` tells how far they
-/// are, and is dear.
+/// A `WalkPause` is called between walks, a few times a second, and when all are done. `state`
+/// returns how far they are and is expensive to call.
 using WalkPause = std::function<void(bool is_done, const std::function<WalkState()>& state)>;
 
 /// Estimates what LayerWalk::eval means from `samples` walks, rounded up to full blocks. Parallel;

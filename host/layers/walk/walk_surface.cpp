@@ -36,7 +36,7 @@ public:
     static Vec3 reflected(const Vec3& v, const Vec3& h) {
         return kernels::vec3_sub(kernels::vec3_scale(h, 2.0 * kernels::vec3_dot(v, h)), v);
     }
-    /// In the frame of the other side.
+    /// Returns the refracted direction in the frame of the other side.
     Vec3 refracted(const Vec3& v, const Vec3& h) const {
         const double c = kernels::vec3_dot(v, h);
         return kernels::vec3_sub(

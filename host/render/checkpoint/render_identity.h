@@ -8,14 +8,14 @@
 
 namespace reradiant {
 
-/// What decides which samples a render takes: the scene (its digest) and the options that matter.
-/// Parts of one render on different machines share it.
+/// Returns what decides which samples a render takes: the scene (its digest) and the options that
+/// matter. Parts of one render on different machines share it.
 SampleIdentity sampling_identity(const Scene& scene, const RenderOptions& options);
 
-/// That, the first sample, the build (digest of the running program and of the kernels) and the
-/// device: two renders that share it give the same sums, bit for bit. The number of samples is not
-/// part of it, a resumed render may go further than the interrupted one was asked to; threads and
-/// batches do not matter.
+/// Returns the facts of sampling_identity, the first sample, the build (digest of the running
+/// program and of the kernels) and the device: two renders that share all of these give the same
+/// sums, bit for bit. The number of samples is not part of it, since a resumed render may go
+/// further than the interrupted one was asked to; threads and batches do not matter.
 SampleIdentity render_identity(const Scene& scene, const Device& device,
                                const RenderOptions& options);
 

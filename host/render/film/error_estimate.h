@@ -7,7 +7,7 @@
 
 namespace reradiant {
 
-/// What a render can say about its own error without a reference.
+/// A `RelmseEstimate` is what a render can say about its own relMSE without a reference.
 struct RelmseEstimate {
     double value = std::numeric_limits<double>::infinity();
     /// 95 % interval of the error that this very image has, not of its expectation.

@@ -10,7 +10,7 @@
 
 namespace reradiant {
 
-/// What one pixel holds, lanes added to bands, in double.
+/// A `PixelSums` holds the sums of one pixel in double, with lanes added to bands.
 struct PixelSums {
     explicit PixelSums(int bands)
         : sum(static_cast<std::size_t>(bands)), alternating(sum.size()), squares(sum.size()) {}
@@ -77,7 +77,7 @@ inline double accepted(const FilmStrip& strip, std::size_t pixel) {
 /// variance of the mean as expectation.
 inline double half_difference(const PixelSums& sums, const FilmLayout& layout, std::size_t band,
                               double n, std::uint32_t samples) {
-    // With an odd count the half of the first sample has one more.
+    // With an odd count the half that holds the first sample has one more.
     const double one_more = samples % 2 == 1 ? sums.sum[band] / n : 0.0;
     return (sums.alternating[band] - (layout.begins_odd ? -one_more : one_more)) / n;
 }

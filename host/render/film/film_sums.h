@@ -11,8 +11,8 @@
 
 namespace reradiant {
 
-/// How the film kernel keeps its sums: per lane where every lane belongs to one band, else (or
-/// when variance per band is wanted) per band.
+/// A `FilmLayout` says how the film kernel keeps its sums: per lane where every lane belongs to one
+/// band, else (or when variance per band is wanted) per band.
 struct FilmLayout {
     bool scatter = false;
     bool band_variance = false;
@@ -39,7 +39,7 @@ struct FilmStrip {
     std::span<const float> statistics; ///< [pixel][film_statistics_per_pixel]
 
     std::size_t pixels() const { return statistics.size() / film_statistics_per_pixel; }
-    std::uint32_t samples(std::size_t pixel) const; ///< that were taken of it
+    std::uint32_t samples(std::size_t pixel) const; ///< how many the pixel took
     std::uint64_t refused() const;
 };
 /// A film's strips in order. All but the last hold a multiple of `film_strip_unit` pixels.

@@ -12,7 +12,7 @@ namespace reradiant {
 /// Attribute of an image: digest of what made it (render_identity.h).
 inline constexpr const char* render_identity_attribute = "reradiant:renderIdentity";
 
-/// How a render went: what `render --json` writes. `model` is the one asked for.
+/// Returns what `render --json` writes: how a render went. `model` is the one that was asked for.
 nlohmann::ordered_json render_statistics(const RenderResult& result, const Device& device,
                                          const std::string& model);
 

@@ -8,8 +8,9 @@
 
 namespace reradiant {
 
-/// What a scene needs of the kernels: one bit each in kernels/core/features.h, and the sizes that
-/// are compiled in. Everything else is an argument.
+/// `RenderFeatures` says what a scene needs of the kernels: one bit each in
+/// kernels/core/features.h, and the sizes that are compiled in. Everything else is an argument of
+/// the kernels.
 struct RenderFeatures {
     bool fluorescence = false, dense_matrix = false, spectral_stack = false, dispersion = false;
     bool smooth = false, rough = false, deeper_lobes = false, weidlich_wilkie = false;

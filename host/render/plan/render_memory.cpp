@@ -17,7 +17,8 @@ namespace reradiant {
 
 namespace {
 
-/// What models need of a path's vertices, and of a path that walks.
+/// `ModelBytes` holds the bytes that models need for each vertex of a path, and for each path that
+/// walks.
 struct ModelBytes {
     std::uint64_t vertex = 0, path = 0;
 };
@@ -38,7 +39,7 @@ ModelBytes model_bytes(const Scene& scene, const WavelengthPlan& plan, Model req
     return bytes;
 }
 
-/// Whether images colour lights or reflectances, so that vertices keep colours.
+/// Returns true when images colour lights or reflectances, so that vertices keep colours.
 bool has_colours(const Scene& scene) {
     const auto is_image = [](const Light& light) {
         const auto* sky = std::get_if<EnvironmentLight>(&light);

@@ -35,9 +35,9 @@ bool mark_re_radiated(const Eigen::MatrixXd& matrix, std::vector<bool>& active) 
     return any;
 }
 
-/// Which cells can carry light at all: those a lamp emits in, and those that something excited
-/// there can re-radiate to, in as many steps as it takes: by one material and then another, or
-/// by one that emits at shorter wavelengths, too.
+/// Returns which cells can carry light at all: those a lamp emits in, and those that something
+/// excited there can re-radiate to, in as many steps as it takes: by one material and then another,
+/// or by one that emits at shorter wavelengths, too.
 std::vector<bool> active_cells(const Scene& scene, const WavelengthGrid& cells) {
     const auto count = static_cast<std::size_t>(cells.count);
     std::vector<bool> active(count, false);
@@ -58,7 +58,7 @@ std::vector<bool> active_cells(const Scene& scene, const WavelengthGrid& cells) 
     return active;
 }
 
-/// That some light is emitted below the wavelength that excites it.
+/// Returns true when some light is emitted below the wavelength that excites it.
 bool has_anti_stokes(const Substrate& substrate) {
     if (!substrate.matrix)
         return false; // fluorophores emit above it only

@@ -22,7 +22,7 @@ double cosine_mean(const StackOptics& optics, double (StackOptics::*value)(doubl
     return sum;
 }
 
-/// What the cosine lobe stands for, per lane.
+/// A `CosineLobe` holds, per lane, the size of the two components that the cosine lobe stands for.
 struct CosineLobe {
     Eigen::VectorXd diffuse;  ///< hemispherical exitance under uniform white light, over T out
     Eigen::VectorXd residual; ///< albedo of the residual, over its value

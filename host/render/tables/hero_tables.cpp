@@ -57,7 +57,8 @@ private:
         return light;
     }
 
-    /// What each excitation adds to an emission lane: the substrate's operator times the light.
+    /// Returns what each excitation lane adds to emission lane `o`: the substrate's operator times
+    /// the light.
     std::vector<double> row(const MaterialRecord& material, std::size_t phase,
                             std::size_t o) const {
         std::vector<double> weights(lanes_, 0.0);

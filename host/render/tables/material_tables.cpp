@@ -96,7 +96,8 @@ private:
 
     LayerRecord& layer_record(std::size_t part) { return out_.layers[record_.first_layer + part]; }
 
-    /// What the kernels evaluate for themselves, and whether lane by lane.
+    /// Chooses what the kernels evaluate for themselves, and whether lane by lane, and appends the
+    /// tables that they need for it.
     void choose_evaluation() {
         const bool nested = is_model_a() && !is_all_smooth(material_);
         const bool dispersive = material_.stack.is_dispersive();

@@ -20,7 +20,7 @@ struct SceneTables {
     std::vector<SurfaceRecord> surfaces;
     std::vector<TextureRecord> textures;
     std::vector<LightRecord> lights;
-    std::vector<WalkPartRecord> walk_parts; ///< of materials that are walked through
+    std::vector<WalkPartRecord> walk_parts; ///< parts of the materials that are walked through
     std::vector<float> tables;
     std::uint32_t sampled_lights = 0; ///< lights that light sampling can choose, first in `lights`
     std::uint32_t environment = NO_INDEX; ///< light that holds the constant environments' spectrum
@@ -42,7 +42,8 @@ void append_lights(const Scene& scene, const WavelengthPlan& plan, SceneTables& 
 
 CameraRecord camera_record(const Camera& camera, const FilmSettings& film);
 
-/// What materials are looked at for in a picture that samples wavelengths so.
+/// Returns the use that models are chosen for in a picture with this plan: whether or not it
+/// samples hero wavelengths.
 ModelUse use_in(const WavelengthPlan& plan);
 
 /// `model` other than Auto replaces every material's own; `at_least`: bits that are set anyway.

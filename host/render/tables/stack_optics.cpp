@@ -30,7 +30,8 @@ public:
     double amplitude(int lobe, double c) const override {
         return transport_->lobe_amplitude(lobe, c);
     }
-    /// By the squares of the amplitudes, adding up to what neither delta nor residual reflects.
+    /// Returns shares that go with the squares of the amplitudes and add up to what neither delta
+    /// nor residual reflects.
     std::vector<double> lobe_shares(double c) const override {
         std::vector<double> shares{transport_->has_top_lobe() ? 1.0 : 0.0};
         const auto lobes = static_cast<int>(deeper_lobes().size());
@@ -76,7 +77,7 @@ int adding_lobe_count(const LayerStack& stack) {
     return count;
 }
 
-/// Whether something that the tables by the angle hold depends on wavelength.
+/// Returns true when something that the tables by the angle hold depends on wavelength.
 bool depends_on_wavelength(const Material& material) {
     const Conductor& metal = material.substrate.conductor;
     return !material.stack.is_grey() ||

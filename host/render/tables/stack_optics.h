@@ -9,7 +9,7 @@
 
 namespace reradiant {
 
-/// Where spectra that a render takes at one wavelength are read.
+/// Wavelength at which spectra are read that a render takes at one wavelength only.
 inline constexpr double reference_nm = 550.0;
 
 /// A stack (and its substrate where that is a conductor) at one wavelength as the kernels' tables
@@ -21,10 +21,11 @@ public:
     virtual double delta(double cos_theta) const = 0;        ///< weight of the mirror direction
     virtual double residual(double cos_theta) const = 0;     ///< over sqrt(pi * its average)
     virtual double amplitude(int lobe, double cos_theta) const = 0;
-    /// About what each rough lobe reflects, the top one first (0 when there is none), then the
-    /// deeper ones. Only for choosing among them.
+    /// Returns approximately what each rough lobe reflects, the top one first (0 when there is
+    /// none), then the deeper ones. This serves only for choosing among them.
     virtual std::vector<double> lobe_shares(double cos_theta) const = 0;
-    /// About what slabs reflect by lobes of their own; the cosine lobe samples them.
+    /// Returns approximately what slabs reflect by lobes of their own; the cosine lobe samples
+    /// them.
     virtual double scattered_share(double /*cos_theta*/) const { return 0.0; }
     /// r of the interreflection with an Oren-Nayar substrate of this sigma; 0 for a model without.
     virtual double internal_reflectance(double sigma) const = 0;
@@ -48,7 +49,8 @@ public:
         return *optics_[spectral_ ? static_cast<std::size_t>(phase * lanes_ + lane) : 0];
     }
     const StackOptics& any() const { return *optics_.front(); }
-    /// Whether some value is above 0 at some node.
+    /// Returns true when `value` is above 0 at some node of the tables by the angle, at any
+    /// wavelength.
     bool is_ever_positive(double (StackOptics::*value)(double) const) const;
 
 private:

@@ -7,13 +7,13 @@
 
 namespace reradiant {
 
-/// What reflects in a stack under model A, from the air down: interfaces, sheets of flakes at the
-/// lower ends of their slabs, and the conductor that it may stand on. LayerRecords are in this
-/// order.
+/// A `StackPart` is something that reflects in a stack under model A: an interface, a sheet of
+/// flakes at the lower end of its slab, or the conductor that the stack may stand on. Parts are
+/// listed from the air down, and LayerRecords are in this order.
 struct StackPart {
     enum class Kind { Interface, Flakes, Conductor };
     Kind kind = Kind::Interface;
-    std::size_t layer = 0; ///< of the interface or the slab; a conductor's: number of layers
+    std::size_t layer = 0; ///< index of the interface or slab; a conductor's: number of layers
     Distribution distribution = Distribution::Ggx;
     double alpha = 0.0;
 

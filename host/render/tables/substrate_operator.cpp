@@ -12,8 +12,9 @@ namespace reradiant {
 
 namespace {
 
-constexpr int most_factors = 4; ///< that are looked for
-/// Of fluorophores, whose factors are known: beyond it the dense product costs no more.
+constexpr int most_factors = 4; ///< most terms of a factorisation that is looked for
+/// Most fluorophores that are applied by their factors, which are known: beyond that the dense
+/// product costs no more.
 constexpr std::size_t most_fluorophores = 8;
 /// Factors are applied in single precision.
 constexpr double largest_factor = 1e12;
@@ -29,9 +30,10 @@ bool has_upper_triangle(const Eigen::MatrixXd& matrix) {
     return false;
 }
 
-/// Whether the strictly lower triangle can be a masked product of few terms at all. Every block
-/// of rows above and columns below a split would have that rank; one singular value more than
-/// the tolerance at one of three splits says no, in milliseconds instead of a long search.
+/// Returns false when the strictly lower triangle cannot be a masked product of few terms at all.
+/// In such a product every block of the rows from a split on and the columns before it has at most
+/// that rank. One singular value more than that above the tolerance, at one of three splits, says
+/// no, in milliseconds instead of a long search.
 bool may_factor(const Eigen::MatrixXd& matrix) {
     const Eigen::Index n = matrix.rows();
     const double bound = 10.0 * factor_tolerance * matrix.norm();
@@ -90,7 +92,7 @@ SemiseparableMatrix factored_on_lanes(const SubstrateOnCells& on_cells, const Wa
     return matrix;
 }
 
-/// What is off the diagonal.
+/// Returns the substrate's operator off the diagonal as a matrix (lanes, lanes), rows = emission.
 Eigen::MatrixXd dense_on_lanes(const SubstrateOnCells& on_cells, const WavelengthPlan& plan) {
     const auto lanes = static_cast<Eigen::Index>(plan.lanes.size());
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(lanes, lanes);

@@ -64,7 +64,8 @@ private:
         });
     }
 
-    /// With what the stack sends back or without.
+    /// Returns the substrate's operator at a phase, with or without what the stack sends back to
+    /// it.
     LaneOperator operator_at(int phase, double albedo, bool with_feedback) const {
         Eigen::VectorXd scale(lanes_.lanes());
         for (int lane = 0; lane < lanes_.lanes(); ++lane)

@@ -99,7 +99,7 @@ private:
         out_.walk_parts.push_back(part);
     }
 
-    /// Of the medium above interface `k`.
+    /// Returns the IOR of the medium above interface `k` at reference_nm; 1 above the first.
     double ior_of_medium(std::size_t k) const {
         return k > 0 ? layers_[k - 1].ior(reference_nm) : 1.0;
     }

@@ -84,7 +84,8 @@ private:
         return 1.0 - values_.facet_reflectance({StackPart::Kind::Interface, layer}, c);
     }
 
-    /// What the first slabs and the films above them let through one way.
+    /// Returns the share of light that the first `count` slabs and the films above them let
+    /// through, one way.
     double absorbed(std::size_t count, double cosine) const {
         const std::vector<double> c = cosines(cosine);
         double depth = 0.0, through_films = 1.0;
@@ -99,7 +100,8 @@ private:
         return through_films * std::exp(-depth);
     }
 
-    /// About what a part reflects through what lies above it: as if all were smooth.
+    /// Returns approximately what a part reflects through what lies above it, as if all were
+    /// smooth.
     double reflected(const StackPart& part, double cosine) const {
         const std::vector<double> c = cosines(cosine);
         double way = absorbed(part.slabs_above(), cosine);
@@ -114,7 +116,7 @@ private:
         return way * way * coverage * values_.facet_reflectance(part, c[part.slabs_above()]);
     }
 
-    /// About what a slab scatters up: half of what it takes out of the beam.
+    /// Returns approximately what a slab scatters up: half of what it takes out of the beam.
     double scattered(const DeeperLobe& lobe, double cosine) const {
         const LayerValues& slab = values_.stack[lobe.layer];
         const double tau = slab.tau + slab.tau_scattering;

@@ -13,7 +13,7 @@ constexpr int tile_edge = 8;
 /// Share of the mean error of a sample that a tile is believed to have at least: a tile whose
 /// samples were all black may still see something, and is looked at now and then.
 constexpr double least_share = 1e-3;
-constexpr std::uint32_t most_samples = 1u << 30; ///< of a pixel, which doubles once more
+constexpr std::uint32_t most_samples = 1u << 30; ///< largest count of a pixel that may double
 
 struct Tile {
     double variance = 0.0; ///< error of one sample, summed over pixels

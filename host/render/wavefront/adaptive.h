@@ -21,11 +21,12 @@ std::uint64_t samples_of(FilmSums film);
 /// film have seen every phase of the comb by then, within reason.
 std::uint32_t samples_before_adapting(const WavelengthPlan& plan);
 
-/// Where samples lower the relMSE most. Tiles of 8 x 8 pixels double their samples, so that every
-/// pixel keeps a whole net of its sequence: again and again the one that gains most per sample,
-/// until `budget` samples are given out. The mean error of n independent samples falls as 1 / n; a
-/// tile's counts for half, that of its neighbourhood for the other half, since few samples may have
-/// missed what is bright and rare. Where nothing fits the budget, the first tile that fits `most`.
+/// Returns where samples lower the relMSE most. Tiles of 8 x 8 pixels double their samples, so that
+/// every pixel keeps a whole net of its sequence: again and again the one that gains most per
+/// sample does so, until `budget` samples are given out. The mean error of n independent samples
+/// falls as 1 / n; a tile's own counts for half and that of its neighbourhood for the other half,
+/// since few samples may have missed what is bright and rare. Where nothing fits the budget, the
+/// first tile that fits `most` is taken.
 ///
 /// `pixel_errors`: what each pixel adds to the estimate (estimated_relmse). Samples are numbered
 /// from `first_sample` on. The same film gives the same groups.

@@ -28,8 +28,8 @@ std::uint32_t next_pass(const RenderProgress& state, const RenderOptions& option
     return std::min(size, options.samples - done);
 }
 
-/// Where samples of a pass go that is as large as a usual one. Does not depend on how long earlier
-/// passes took: a resumed render takes the same samples.
+/// Returns where the samples of the next pass go, which is as large as a usual one. This does not
+/// depend on how long earlier passes took, so that a resumed render takes the same samples.
 std::vector<AdaptiveGroup> adaptive_pass(Rendering& rendering, const Scene& scene,
                                          const RenderOptions& options) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(scene.film.width) *

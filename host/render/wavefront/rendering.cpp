@@ -139,7 +139,7 @@ void Rendering::estimate_error() {
 }
 
 std::span<const float> Rendering::pixel_errors() {
-    if (errors_.empty()) // of a render that was resumed
+    if (errors_.empty()) // as they are when a render was resumed
         estimate_error();
     return errors_;
 }

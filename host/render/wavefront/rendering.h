@@ -28,7 +28,7 @@ public:
     Wavefront& wavefront() { return wavefront_; }
     const FilmLayout& layout() const { return layout_; }
     const WavelengthPlan& plan() const { return result_.plan; }
-    /// What each pixel adds to the estimated error, of adaptive renders.
+    /// Returns what each pixel adds to the estimated error, for adaptive renders.
     std::span<const float> pixel_errors();
 
     /// The film holds so many samples now. Estimates the error, shows the pass to the observer, and
@@ -36,9 +36,9 @@ public:
     void after_pass(std::uint32_t samples, const RenderObserver& observe,
                     const std::function<bool(const RenderProgress&)>& goes_on);
     bool interrupted() const { return result_.interrupted; }
-    /// The result, without an image. Nothing can be rendered afterwards.
+    /// Returns the result, without an image. Nothing can be rendered afterwards.
     RenderResult finish();
-    /// The same with the image.
+    /// Returns the result as `finish` does, with the image.
     RenderResult finish_with_image();
 
 private:
@@ -57,7 +57,7 @@ private:
     FilmLayout layout_;
     CheckpointFile checkpoint_;
     RenderProgress state_;
-    std::vector<float> errors_; ///< of pixels, of adaptive renders; empty before the first estimate
+    std::vector<float> errors_; ///< per pixel, if adaptive; empty before the first estimate
     double seconds_before_ = 0.0, observing_seconds_ = 0.0;
 };
 

@@ -19,7 +19,7 @@ public:
 
     /// A round lasts so many seconds; those of the render before it.
     void begin_round(double seconds, double seconds_before);
-    /// Of the samples to come; none when the round is over.
+    /// Returns the next range of the samples to come; an empty one when the round is over.
     TeamTask next(const TeamReport& report);
     std::uint32_t handed_out() const { return handed_out_; }
     bool interrupted() const { return interrupted_; }

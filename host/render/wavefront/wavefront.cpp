@@ -122,7 +122,7 @@ void Wavefront::render_pass(std::span<const PixelSamples> pixels, std::uint32_t 
             const auto chosen = chosen_.map(CL_MAP_WRITE, 0, pixels.size());
             std::copy(pixels.begin(), pixels.end(), chosen.span().begin());
         }
-        const auto place_of = [&](std::uint32_t pixel) { // of the first that is not before it
+        const auto place_of = [&](std::uint32_t pixel) { // first chosen one not before it
             return static_cast<std::uint32_t>(
                 std::ranges::lower_bound(pixels, pixel, {}, &PixelSamples::pixel) - pixels.begin());
         };
@@ -165,8 +165,8 @@ void Wavefront::trace_paths(const Batch& batch) {
     }
 }
 
-/// Whether the walks of a batch found room for their events. If not there is room afterwards: they
-/// are the same when the batch is traced again.
+/// Returns true when the walks of a batch found room for their events. If not it makes the room:
+/// the walks are the same when the batch is traced again.
 bool Wavefront::walks_fit() {
     if (!scene_.features.walk)
         return true;

@@ -19,7 +19,7 @@
 
 namespace reradiant {
 
-/// Where the time went, in seconds, and how much work it was.
+/// `WavefrontStatistics` says where the time went, in seconds, and how much work it was.
 struct WavefrontStatistics {
     double intersect_seconds = 0.0, occlude_seconds = 0.0; ///< Embree, on the host
     double generate_seconds = 0.0, shade_seconds = 0.0, gather_seconds = 0.0,
@@ -39,7 +39,7 @@ struct WavefrontSettings {
     std::uint32_t seed = 0;
     std::size_t batch_paths = 1u << 15;
     int threads = 0;
-    std::uint32_t sequence_blocks = 0; ///< of a path that come from the sequence (sequence.h)
+    std::uint32_t sequence_blocks = 0; ///< a path's first blocks, from the sequence (sequence.h)
     bool adaptive = false;             ///< passes of chosen pixels will come
     RaySink on_rays = {};
 };
@@ -116,7 +116,7 @@ private:
     /// The batch's paths that reach a depth, of even and of odd ones, and how many.
     std::array<DeviceArray<std::uint32_t>, 2> live_;
     std::array<std::uint32_t, 2> live_count_{};
-    DeviceArray<std::uint8_t> goes_on_; ///< of the live ones, whether they reach the next
+    DeviceArray<std::uint8_t> goes_on_; ///< per live path: 1 where it reaches the next depth
     DeviceArray<PathState> paths_;
     DeviceArray<PixelSamples> chosen_; ///< the pass's pixels, where those are not all
     DeviceArray<VertexRecord> vertices_;

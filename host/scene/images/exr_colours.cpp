@@ -17,7 +17,7 @@ namespace reradiant {
 
 namespace {
 
-/// XYZ of one unit of each of the three channels.
+/// `Primaries` holds the XYZ of one unit of each of the three channels.
 using Primaries = std::array<Xyz, 3>;
 
 bool are_close(const Imath::V2f& a, const Imath::V2f& b) {
@@ -54,7 +54,7 @@ Primaries primaries_of(const Imf::Chromaticities& given, const SourcePosition& a
     return primaries;
 }
 
-/// Nothing where the channels are linear sRGB already.
+/// Returns the primaries of the channels, or nothing where the channels are linear sRGB already.
 std::optional<Primaries> primaries_of(const Imf::Header& header, ExrColours colours,
                                       const SourcePosition& at) {
     if (colours == ExrColours::Xyz)
@@ -82,7 +82,8 @@ void convert_to_linear_srgb(Image& image, const Imf::Header& header, ExrColours 
     const auto primaries = primaries_of(header, colours, at);
     if (!primaries)
         return;
-    // What rounding leaves at an edge of the gamut, of the largest: half floats have 11 bits.
+    // Rounding may leave a pixel at an edge of the gamut this far outside, as a share of its
+    // largest value: half floats have 11 bits.
     const double rounding = holds_halves(header) ? 0x1p-10 : 1e-5;
     for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
         Xyz xyz{};

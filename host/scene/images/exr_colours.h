@@ -7,12 +7,13 @@
 
 namespace reradiant {
 
-/// What the channels of an EXR image stand for.
+/// `ExrColours` names what the channels of an EXR image stand for.
 enum class ExrColours { Rgb, LuminanceChroma, Xyz, Grey };
 
-/// Makes linear sRGB of an image whose three values a pixel are such colours, R, G and B by the
-/// header's chromaticities. The XYZ of a pixel stays, whatever white the file has: nothing adapts.
-/// Input Error at `at` for chromaticities of no colour space, and for a pixel outside the gamut.
+/// Converts an image, whose three values a pixel are such colours, to linear sRGB; R, G and B are
+/// read by the chromaticities of the header. The XYZ of a pixel is kept, whatever white the file
+/// has: there is no chromatic adaptation. Throws an input Error at `at` for chromaticities that
+/// span no colour space, and for a pixel outside the gamut.
 void convert_to_linear_srgb(Image& image, const Imf::Header& header, ExrColours colours,
                             const SourcePosition& at);
 

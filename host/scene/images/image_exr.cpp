@@ -21,7 +21,7 @@ namespace reradiant {
 
 namespace {
 
-/// Which channels of which part hold the colours.
+/// A `ColourPart` says which channels of which part hold the colours.
 struct ColourPart {
     int part = 0;
     ExrColours colours = ExrColours::Rgb;
@@ -72,7 +72,7 @@ void check_sampling(const Imf::Header& header, const ColourPart& found, const So
     }
 }
 
-/// In the first part that has some.
+/// Finds the colours in the first part that has some.
 ColourPart find_colours(Imf::MultiPartInputFile& input, const SourcePosition& at) {
     for (int part = 0; part < input.parts(); ++part) {
         const Imf::Header& header = input.header(part);
@@ -113,7 +113,8 @@ std::vector<float> read_planes(Imf::MultiPartInputFile& input, const ColourPart&
     return rgb;
 }
 
-/// By OpenEXR's own class, which knows how chroma was filtered. It reads the first part only.
+/// Reads luminance and chroma by OpenEXR's own class, which knows how chroma was filtered. It reads
+/// the first part only.
 std::vector<float> read_luminance_chroma(const std::filesystem::path& file, const ColourPart& found,
                                          const ExrWindow& window) {
     if (found.part != 0)

@@ -12,7 +12,7 @@ namespace {
 
 enum class ImageKind { Png, Exr, Other };
 
-/// By the first bytes: names may say anything.
+/// Finds the kind of a file from its first bytes, since a name may say anything.
 ImageKind kind_of(const std::filesystem::path& file) {
     constexpr std::array<unsigned char, 4> png{0x89, 'P', 'N', 'G'}, exr{0x76, 0x2f, 0x31, 0x01};
     std::array<char, 4> bytes{};
@@ -43,7 +43,7 @@ int load_image(const std::string& name, const SourcePosition& at, ImageEncoding 
     const ImageKind kind = kind_of(file);
     if (kind == ImageKind::Other)
         throw_input_error(at, fmt::format("\"{}\" is no image", name), "give a PNG or an EXR file");
-    // The same file may be colours in one place and data in another.
+    // A file may be colours in one place and data in another.
     const bool is_linear = encoding == ImageEncoding::Linear;
     for (std::size_t i = 0; i < state.images.size(); ++i)
         if (state.images[i].file == file && state.image_is_linear[i] == is_linear)

@@ -16,12 +16,14 @@ namespace reradiant {
 /// cannot hold. Memory is taken in proportion to the file's size, never to a count that it claims.
 MeshShape read_mesh(const std::filesystem::path& file);
 
-/// The same from bytes that were read; `file` gives the ending and the name in messages.
+/// Parses a mesh from bytes that were read, as `read_mesh` does from a file; `file` gives the
+/// ending and the name in messages.
 MeshShape parse_mesh(const std::filesystem::path& file, std::string_view bytes);
 MeshShape parse_ply(const std::filesystem::path& file, std::string_view bytes);
 MeshShape parse_obj(const std::filesystem::path& file, std::string_view bytes);
 
-/// Text without its byte-order mark; input Error for one of UTF-16 or UTF-32, by name.
+/// Returns the text without its byte-order mark; throws an input Error that names UTF-16 or UTF-32
+/// for a text in one of these.
 std::string_view without_byte_order_mark(const std::filesystem::path& file, std::string_view bytes);
 
 /// Appends the fan of a convex face whose corners are vertex numbers.
@@ -31,12 +33,13 @@ void append_fan(const std::vector<std::uint32_t>& corners, MeshShape& mesh);
 void append_face(const std::vector<std::uint32_t>& vertices, std::span<const Vector3> corners,
                  std::uint64_t number, const SourcePosition& at, MeshShape& mesh);
 
-/// Normals at the vertices of a mesh without: those of its triangles weighted by their angle there
-/// (Thuermer and Wuethrich 1998). A vertex of no area gets zero, which means: shade with the
-/// triangle's own.
+/// Adds normals at the vertices of a mesh that has none: those of its triangles weighted by their
+/// angle there (Thuermer and Wuethrich 1998). A vertex of no area gets zero, which means that the
+/// normal of the triangle is used for shading.
 void add_smooth_normals(MeshShape& mesh);
 
-/// A coordinate as float; input Error at `at` naming it unless finite and at most 1e18 in size.
+/// Returns a coordinate as float; throws an input Error at `at` that names it unless it is finite
+/// and at most 1e18 in size.
 float mesh_coordinate(double value, const SourcePosition& at, const std::string& name);
 
 } // namespace reradiant

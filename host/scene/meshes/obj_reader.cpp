@@ -15,7 +15,8 @@ namespace reradiant {
 
 namespace {
 
-/// What a corner of a face refers to, counted from 0; ABSENT when not given.
+/// A `Corner` holds the indices, counted from 0, that a corner of a face refers to; ABSENT when not
+/// given.
 struct Corner {
     std::uint32_t position, texture, normal;
     bool operator==(const Corner&) const = default;
@@ -73,7 +74,7 @@ private:
     bool warned_ = false;
     std::vector<double> positions_, textures_, normals_;
     std::unordered_map<Corner, std::uint32_t, CornerHash> vertices_;
-    std::vector<Corner> corners_; ///< of each vertex of the mesh
+    std::vector<Corner> corners_; ///< by vertex of the mesh
     std::vector<std::uint32_t> face_;
     std::vector<Vector3> face_positions_;
     MeshShape mesh_;
@@ -97,7 +98,7 @@ void ObjReader::read_numbers(std::vector<double>& values, int count, const std::
         values.push_back(read_number(text_.word(), i + 1, name));
 }
 
-/// x y z, which a weight and a colour may follow.
+/// Reads x y z, which a weight and a colour may follow.
 void ObjReader::read_vertex() {
     const std::string name = fmt::format("vertex {}", positions_.size() / 3 + 1);
     read_numbers(positions_, 3, name);
@@ -198,7 +199,8 @@ void ObjReader::read_statement() {
 }
 
 void ObjReader::add_normal(MeshShape& mesh, std::uint32_t normal) const {
-    // A corner without a normal gets zero, which means: shade with the triangle's own.
+    // A corner without a normal gets zero, which means that the normal of the triangle is used for
+    // shading.
     for (std::size_t axis = 0; axis < 3; ++axis)
         mesh.normals.push_back(
             normal == ABSENT ? 0.0f : static_cast<float>(normals_[3 * std::size_t{normal} + axis]));

@@ -19,7 +19,7 @@ public:
     bool next_statement();
     /// The next word of the statement; empty at its end.
     std::string_view word();
-    /// Of the last word, or of the statement's end.
+    /// Returns the place of the last word, or of the end of the statement.
     SourcePosition position() const { return {file_, line_number_, column_}; }
 
 private:

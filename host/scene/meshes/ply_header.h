@@ -26,7 +26,7 @@ struct PlyElement {
     int line = 0; ///< of its declaration
     std::vector<PlyProperty> properties;
 
-    /// -1 when there is none of that name.
+    /// Returns the index of a property, or -1 when there is none of that name.
     int index_of(std::string_view property) const;
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t UNUSED = 8;
 
-/// Which of x y z nx ny nz u v each property of a vertex is.
+/// `VertexColumns` says which of x y z nx ny nz u v each property of a vertex is.
 struct VertexColumns {
     std::vector<std::size_t> slot_of_property;
     bool has_normals = false, has_texture = false;
@@ -55,7 +55,7 @@ VertexColumns vertex_columns(const std::string& file, const PlyElement& element)
     return columns;
 }
 
-/// Which properties of a face hold what is read; -1 for none.
+/// `FaceColumns` says which properties of a face hold what is read; -1 for none.
 struct FaceColumns {
     int corners = -1;
     int wedges = -1;  ///< list of u v of every corner
@@ -119,7 +119,7 @@ private:
     std::optional<double> texture_number_;
     bool warned_of_textures_ = false;
     MeshShape mesh_;
-    std::optional<WedgeVertices> wedges_; ///< where faces have texture coordinates
+    std::optional<WedgeVertices> wedges_; ///< set when faces have texture coordinates
 };
 
 std::uint64_t PlyReader::read_list_size(const PlyProperty& property, const PlyItem& what) {

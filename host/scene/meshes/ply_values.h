@@ -13,7 +13,7 @@
 
 namespace reradiant {
 
-/// What a value belongs to, made into text for an error only.
+/// A `PlyItem` is what a value belongs to; it is made into text for an error only.
 struct PlyItem {
     std::string_view element;
     std::uint64_t index;
@@ -21,7 +21,7 @@ struct PlyItem {
     std::string text() const { return fmt::format("{} {}", element, index); }
 };
 
-/// The values after the header one by one, whatever the format.
+/// `PlyValues` reads the values after the header one by one, whatever the format.
 class PlyValues {
 public:
     PlyValues(const std::filesystem::path& file, std::string_view bytes, const PlyHeader& header)
@@ -33,15 +33,15 @@ public:
         return format_ == PlyFormat::Ascii ? next_ascii(what) : next_binary(type, what);
     }
     std::size_t remaining() const { return bytes_.size() - next_; }
-    /// Whether something but blanks is left.
+    /// Returns true when something other than blanks is left.
     bool has_more();
-    /// Line and column of the last value (ascii), else the file.
+    /// Returns line and column of the last value (ascii), else the file alone.
     SourcePosition position() const {
         if (format_ != PlyFormat::Ascii)
             return {file_};
         return {file_, line_, static_cast<int>(start_ - line_start_) + 1};
     }
-    /// " at byte N" for binary files, whose errors have no line.
+    /// Returns " (at byte N)" for binary files, whose errors have no line; else nothing.
     std::string byte_text() const {
         return format_ == PlyFormat::Ascii ? "" : fmt::format(" (at byte {})", start_);
     }

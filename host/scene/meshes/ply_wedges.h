@@ -9,14 +9,15 @@
 
 namespace reradiant {
 
-/// Gives vertices the texture coordinates that corners of faces (wedges) have: the first that a
-/// vertex meets become its own, others make a copy of it.
+/// `WedgeVertices` gives vertices the texture coordinates of the corners of faces (wedges): the
+/// first that a vertex meets become its own, and each other pair makes a copy of the vertex.
 class WedgeVertices {
 public:
-    /// Of the vertices that the mesh holds now. Texture coordinates that they have are dropped.
+    /// Starts from the vertices that the mesh holds now and drops the texture coordinates that they
+    /// have.
     explicit WedgeVertices(MeshShape& mesh);
 
-    /// The vertex at the place of `vertex` that has these texture coordinates.
+    /// Returns the vertex at the place of `vertex` that has these texture coordinates.
     std::uint32_t with_texture(std::uint32_t vertex, float u, float v);
 
 private:

@@ -18,7 +18,7 @@ struct Point {
     bool operator==(const Point&) const = default;
 };
 
-/// Twice the area of a triangle, positive when it turns to the left.
+/// Returns twice the area of a triangle, positive when it turns to the left.
 double turn(const Point& a, const Point& b, const Point& c) {
     return (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u);
 }
@@ -36,8 +36,9 @@ Vector3 newell_normal(std::span<const Vector3> corners) {
     return sum;
 }
 
-/// The corners moved along the normal into the coordinate plane that it leans to most: corners of a
-/// polygon in such a plane keep their coordinates exactly, so that what lies on a line still does.
+/// Returns the corners moved along the normal into the coordinate plane that it leans to most:
+/// corners of a polygon in such a plane keep their coordinates exactly, so that what lies on a line
+/// still does.
 std::vector<Point> shadow(std::span<const Vector3> corners, const Vector3& normal) {
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k)
@@ -55,7 +56,8 @@ std::vector<Point> shadow(std::span<const Vector3> corners, const Vector3& norma
     return points;
 }
 
-/// Whether the triangles of corner 0 with each edge all turn left and lie within half a turn.
+/// Returns true when the triangles of corner 0 with each edge all turn left and lie within half a
+/// turn.
 bool is_fan(const std::vector<Point>& p) {
     for (std::size_t i = 2; i < p.size(); ++i)
         if (!(turn(p[0], p[i - 1], p[i]) > 0.0 && turn(p[0], p[1], p[i]) > 0.0))
@@ -75,7 +77,7 @@ std::vector<std::uint32_t> fan(std::size_t corners) {
 /// left is all that an ear is checked for besides keeping the rest in order.
 class EarClipper {
 public:
-    /// `noise` is by how much the points may be off their places.
+    /// `noise` is the distance by which the points may be off their places.
     EarClipper(std::vector<Point> points, double noise)
         : p_(std::move(points)), left_(p_.size()), noise_(noise) {
         for (std::uint32_t i = 0; i < left_; ++i) {
@@ -89,7 +91,7 @@ public:
 private:
     enum class Pass { Strict, Flat, Touching };
 
-    /// 1 where a, b, c turn to the left, -1 to the right, 0 where rounding may say either.
+    /// Returns 1 where a, b, c turn to the left, -1 to the right, 0 where rounding may say either.
     int side(const Point& a, const Point& b, const Point& c) const {
         const double turned = turn(a, b, c);
         const double unsure = noise_ * (std::fabs(b.u - a.u) + std::fabs(b.v - a.v) +
@@ -123,8 +125,8 @@ void EarClipper::spend(std::size_t steps) {
             fmt::format("has {} corners, too many for one that is not convex", p_.size()));
 }
 
-/// Edges that cross by more than rounding, seen before any ear: winding twice around a place looks
-/// in order to the ears.
+/// Refuses edges that cross by more than rounding. This is checked before any ear is cut, because
+/// to the ears an outline that winds twice around a place looks in order.
 void EarClipper::refuse_crossings() {
     const auto next = [&](std::size_t i) { return i + 1 == p_.size() ? 0 : i + 1; };
     for (std::size_t i = 0; i < p_.size(); ++i) {
@@ -145,7 +147,7 @@ void EarClipper::remove(std::uint32_t i) {
     --left_;
 }
 
-/// Of corners that repeat their predecessor one is left; returns a corner that stays.
+/// Leaves one corner of each run of equal ones and returns a corner that stays.
 std::uint32_t EarClipper::drop_repeats() {
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < p_.size(); ++i)
@@ -156,9 +158,9 @@ std::uint32_t EarClipper::drop_repeats() {
     return kept;
 }
 
-/// Whether another corner keeps the ear at `tip` from being cut off: it lies in the triangle, or at
-/// the tip with an edge that leads into the triangle. Of the triangle's edges it lies on the
-/// `least` side or further in: 1 is surely within, 0 perhaps on an edge.
+/// Returns true when another corner keeps the ear at `tip` from being cut off: it lies in the
+/// triangle, or at the tip with an edge that leads into the triangle. `least` says how surely it
+/// must lie within each edge of the triangle: 1 is surely within, 0 perhaps on the edge.
 bool EarClipper::holds(std::uint32_t tip, std::uint32_t other, int least) const {
     const Point &a = p_[before_[tip]], &b = p_[tip], &c = p_[after_[tip]], &q = p_[other];
     if (q == a || q == c)
@@ -171,7 +173,8 @@ bool EarClipper::holds(std::uint32_t tip, std::uint32_t other, int least) const 
     return is_between(q) && side(c, a, q) >= least;
 }
 
-/// Corners that are surely convex hold no ear that others would not.
+/// Returns true when the ear at corner i may be cut off. Corners that are surely convex are not
+/// tested: they hold no ear that others would not.
 bool EarClipper::can_go(Pass pass, std::uint32_t i) {
     if (pass == Pass::Flat)
         return side_at(i) == 0;
@@ -224,8 +227,8 @@ std::vector<std::uint32_t> EarClipper::clip() {
     return std::move(triangles_);
 }
 
-/// Whether the outline only goes there and back: nothing is left when corners between two equal
-/// ones are taken away.
+/// Returns true when the outline only goes there and back: nothing is left when corners between two
+/// equal ones are taken away.
 bool is_folded_up(std::span<const Vector3> corners) {
     std::vector<Vector3> way;
     for (const Vector3& corner : corners) {
@@ -244,9 +247,10 @@ bool is_folded_up(std::span<const Vector3> corners) {
     return last - first <= 2;
 }
 
-/// How far the corners reach.
+/// `Spread` says how far the corners reach, and whether they all lie on a line.
 struct Spread {
-    double noise = 0.0; ///< what rounding to single precision may move, with room for projecting
+    /// Distance that rounding to single precision may move a corner, with room for projecting.
+    double noise = 0.0;
     bool is_line = true;
 
     explicit Spread(std::span<const Vector3> corners) {

@@ -86,7 +86,8 @@ void add_element(const pugi::xml_node& element, MitsubaScene& scene) {
                               "a scene holds sensor, integrator, emitters, shapes, bsdfs");
 }
 
-/// What a spectrum or a reflectance refuses without knowing where it stands is placed here.
+/// Adds an element. A spectrum or a reflectance may refuse it without knowing its place; such an
+/// error is placed at the element.
 void add_element_in_place(const pugi::xml_node& element, MitsubaScene& scene) {
     try {
         add_element(element, scene);
@@ -95,7 +96,7 @@ void add_element_in_place(const pugi::xml_node& element, MitsubaScene& scene) {
     }
 }
 
-/// What no shape has may be of any kind.
+/// Warns of each bsdf that no shape refers to; such a bsdf may be of any kind.
 void warn_of_unused_bsdfs(const MitsubaScene& scene) {
     for (const pugi::xml_node& bsdf : scene.document().scene().children("bsdf"))
         if (scene.material_names.count(bsdf.offset_debug()) == 0 &&

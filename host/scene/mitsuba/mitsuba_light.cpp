@@ -36,7 +36,7 @@ toml::table constant_light(const MitsubaObject& emitter, MitsubaScene& scene) {
     return light;
 }
 
-/// Degrees about +y; input Error for any other transform.
+/// Returns the degrees of a turn about +y; throws an input Error for any other transform.
 double turn_about_y(const MitsubaObject& emitter) {
     const Eigen::Matrix3d turn = emitter.transform_or_identity("to_world").topLeftCorner<3, 3>();
     const double angle = std::atan2(turn(0, 2), turn(2, 2));

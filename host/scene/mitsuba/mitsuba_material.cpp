@@ -96,8 +96,8 @@ toml::table diffuse(const MitsubaObject& bsdf, const char* property, MitsubaScen
     return toml::table{{"substrate", std::move(substrate)}};
 }
 
-/// take_linear_plastic; a reflectance that the scene's own reader would refuse later is refused
-/// here.
+/// Applies take_linear_plastic and refuses here a reflectance that the scene's own reader would
+/// refuse later.
 bool has_linear_base(const MitsubaObject& bsdf, toml::table& material, const toml::table& layer) {
     try {
         return take_linear_plastic(*material["substrate"].as_table(), layer);

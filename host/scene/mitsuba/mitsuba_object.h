@@ -12,9 +12,9 @@
 
 namespace reradiant {
 
-/// One plugin of a scene (a shape, a bsdf, ...): its properties by name and its nested plugins.
-/// What nobody has asked for when `finish` is called is an input Error at its place, so that
-/// nothing of a scene is left out in silence.
+/// A `MitsubaObject` is one plugin of a scene (a shape, a bsdf, ...): its properties by name and
+/// its nested plugins. `finish` throws an input Error at the place of each of them that nobody has
+/// asked for, so that nothing of a scene is left out in silence.
 class MitsubaObject {
 public:
     MitsubaObject(const MitsubaDocument& document, const pugi::xml_node& element);
@@ -26,14 +26,16 @@ public:
     [[noreturn]] void fail(const std::string& what_is_wrong, const std::string& remedy = {}) const {
         document_->fail(element_, what_is_wrong, remedy);
     }
-    /// A type that the import does not know; `known` are those that it does.
+    /// Throws the input Error for a type that the import does not know; `known` are those that it
+    /// does.
     [[noreturn]] void refuse_type(const std::vector<std::string>& known) const;
 
-    /// A property by its name whatever its tag; empty when absent. Counts as asked for.
+    /// Returns a property by its name, whatever its tag; empty when absent. It counts as asked for.
     pugi::xml_node find(const std::string& name) const;
     bool has(const std::string& name) const { return static_cast<bool>(find(name)); }
 
-    /// The key that something made of a property gets: placed there, or at the plugin without it.
+    /// Returns the key for something made of a property. Its place is that of the property, or of
+    /// the plugin when that is absent.
     toml::key key(const char* made, const std::string& property) const;
 
     std::string text_or(const std::string& name, const std::string& otherwise) const;
@@ -46,8 +48,8 @@ public:
 
     /// Nested plugins of one tag in their order, references by <ref> resolved.
     std::vector<pugi::xml_node> nested(const std::string& tag) const;
-    /// Properties that this program has nothing for and that change nothing or little: a warning
-    /// says so.
+    /// Leaves out a property that this program has nothing for and that changes nothing or little,
+    /// with a warning.
     void ignore(const std::string& name, const std::string& why) const;
     void finish() const;
 

@@ -10,7 +10,8 @@
 
 namespace reradiant {
 
-/// What the parts of an import share: the scene that is made, and how files are named in it.
+/// A `MitsubaScene` is what the parts of an import share: the scene that is made, and how files are
+/// named in it.
 class MitsubaScene {
 public:
     /// File names in the table start at `base`.
@@ -33,7 +34,7 @@ public:
     /// Names of materials by the offset of their <bsdf>: each is added once.
     std::map<std::ptrdiff_t, std::string> material_names;
     std::set<std::ptrdiff_t> nested_bsdfs; ///< offsets of those that others hold
-    int bsdf_depth = 0;                    ///< of the one that is read now
+    int bsdf_depth = 0;                    ///< nesting depth of the one that is read now
     /// Type of the last texture that was read, and of a texture that a material uses ("image",
     /// "checker"); empty: none.
     std::string texture_met;
@@ -52,20 +53,22 @@ toml::array toml_vector(const Eigen::Vector3d& v);
 /// Emission: <float> and <rgb> are multiples of D65, as Mitsuba has them in its spectral modes.
 toml::table mitsuba_emission(const MitsubaObject& owner, const std::string& name,
                              MitsubaScene& scene);
-/// Reflectances and the like, also textures; a number, table or reference inserted at `key`.
-/// `otherwise` when the property is absent.
+/// Inserts a reflectance or the like, also a texture, from a property: a number, table or reference
+/// at `key`. `otherwise` is inserted when the property is absent.
 void insert_mitsuba_reflectance(toml::table& into, const char* key, const MitsubaObject& owner,
                                 const std::string& name, double otherwise, MitsubaScene& scene);
-/// The same without textures and colours: IOR and absorption.
+/// Inserts an IOR or an absorption, as `insert_mitsuba_reflectance` does for a reflectance, but
+/// without textures and colours.
 void insert_mitsuba_spectrum(toml::table& into, const char* key, const MitsubaObject& owner,
                              const std::string& name, MitsubaScene& scene);
 
-/// Makes a base beneath a coat look as Mitsuba's plastic without `nonlinear`, which takes every
+/// Makes a base beneath a coat look as in Mitsuba's plastic without `nonlinear`, which treats every
 /// reflection between the two as one by a white base: Mitsuba divides rho by 1 - r, this program by
-/// 1 - r rho, so the base gets rho / (1 - r + r rho). False, and nothing changed, for a texture.
+/// 1 - r rho, so the base gets rho / (1 - r + r rho). Returns false and changes nothing for a
+/// texture.
 bool take_linear_plastic(toml::table& substrate, const toml::table& layer);
 
-/// A texture plugin becomes a [[texture]]; what a reflectance says to use it.
+/// Makes a [[texture]] of a texture plugin and returns what a reflectance says to use it.
 toml::table mitsuba_texture(const pugi::xml_node& element, MitsubaScene& scene);
 
 /// Adds the material of a <bsdf> once, and returns its name.

@@ -23,7 +23,8 @@ Vector column(const Matrix& matrix, int k) {
     return matrix.block<3, 1>(0, k);
 }
 
-/// The length that every axis is scaled by; input Error when they differ or are sheared.
+/// Returns the length that every axis is scaled by; throws an input Error when they differ or are
+/// sheared.
 double uniform_scale(const MitsubaObject& shape, const Matrix& matrix, int axes) {
     const double scale = column(matrix, 0).norm();
     for (int k = 0; k < axes; ++k)
@@ -48,7 +49,8 @@ toml::table sphere(const MitsubaObject& shape, const Matrix& matrix) {
     return made;
 }
 
-/// -1..1 by -1..1, facing +z; where it faces the other way the edges of one that emits are swapped.
+/// Makes the rectangle -1..1 by -1..1, which faces +z; where it faces the other way the edges of
+/// one that emits are swapped.
 toml::table rectangle(const Matrix& matrix, bool flipped, bool emits) {
     const bool mirrored = matrix.topLeftCorner<3, 3>().determinant() < 0.0;
     toml::array u = toml_vector(2.0 * column(matrix, 0)), v = toml_vector(2.0 * column(matrix, 1));
@@ -83,7 +85,7 @@ std::vector<toml::table> cube(const Matrix& matrix) {
     return faces;
 }
 
-/// A mesh of one parallelogram as a rectangle; empty for any other.
+/// Returns a mesh of one parallelogram as a rectangle, or nothing for any other mesh.
 std::optional<toml::table> parallelogram(const MitsubaObject& shape, const Matrix& matrix,
                                          bool flipped, const MitsubaScene& scene) {
     const pugi::xml_node name = shape.find("filename");
@@ -160,7 +162,7 @@ void fit_texture(const MitsubaObject& shape, const std::string& texture, toml::t
     }
 }
 
-/// What a shape is made of, each with its type.
+/// Returns the tables of the shapes that a Mitsuba shape is made of, each with its type.
 std::vector<toml::table> geometry(const MitsubaObject& shape, bool flipped, MitsubaScene& scene) {
     const Matrix matrix = shape.transform_or_identity("to_world");
     require_invertible(shape, matrix);

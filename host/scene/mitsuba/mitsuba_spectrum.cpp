@@ -84,11 +84,11 @@ struct Samples {
     std::vector<double> nm, value;
 };
 
-/// What a sampled spectrum is beyond its samples.
+/// `Beyond` says which values a sampled spectrum has beyond its samples.
 enum class Beyond { Zero, EndValues };
 
-/// Mitsuba takes 0 beyond the samples, this program their end values: zeros are added up to
-/// Mitsuba's range of wavelengths.
+/// Returns the table of samples. Mitsuba takes 0 beyond the samples and this program their end
+/// values: for Beyond::Zero, zeros are added up to Mitsuba's range of wavelengths.
 toml::table samples_of(Samples samples, Beyond beyond, const SourcePosition& at) {
     constexpr double from_nm = 360.0, to_nm = 830.0, edge_nm = 1e-3;
     auto& [nm, value] = samples;
@@ -105,7 +105,7 @@ toml::table samples_of(Samples samples, Beyond beyond, const SourcePosition& at)
     return table_of(nm, value);
 }
 
-/// "400:0.1 700:0.5", or a number alone.
+/// Reads "400:0.1 700:0.5", or a number alone.
 Samples pairs(const MitsubaDocument& document, const pugi::xml_node& element) {
     std::string text = document.text(element, "value");
     std::replace(text.begin(), text.end(), ':', ' ');
@@ -303,7 +303,8 @@ void insert_mitsuba_reflectance(toml::table& into, const char* key, const Mitsub
 
 void insert_mitsuba_spectrum(toml::table& into, const char* key, const MitsubaObject& owner,
                              const std::string& name, MitsubaScene& scene) {
-    // Where Mitsuba takes an index of refraction of 0 there is no surface to compare with.
+    // The end values are kept: an index of refraction of 0, which Mitsuba takes beyond the samples,
+    // leaves no surface to compare with.
     insert_values(into, key, owner, name, scene, Beyond::EndValues);
 }
 

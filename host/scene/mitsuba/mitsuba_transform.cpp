@@ -9,7 +9,7 @@ namespace reradiant {
 
 namespace {
 
-/// x, y, z, each `otherwise` when absent; `value` stands for all three, or holds them.
+/// Reads x, y, z, each `otherwise` when absent; `value` stands for all three, or holds them.
 Eigen::Vector3d components(const MitsubaDocument& document, const pugi::xml_node& step,
                            double otherwise) {
     if (document.has(step, "value")) {
@@ -42,7 +42,8 @@ Eigen::Matrix4d rotation(const MitsubaDocument& document, const pugi::xml_node& 
     return matrix;
 }
 
-/// Columns left, up, forward, origin, as Mitsuba's cameras have them.
+/// Returns the matrix with the columns left, up, forward and origin, as Mitsuba's cameras have
+/// them.
 Eigen::Matrix4d look_at(const MitsubaDocument& document, const pugi::xml_node& step) {
     const Eigen::Vector3d origin = triple(document, step, "origin");
     const Eigen::Vector3d forward = triple(document, step, "target") - origin;

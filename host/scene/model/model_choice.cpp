@@ -23,7 +23,7 @@ std::optional<std::string> device_walk_refusal(const Material& material) {
 
 namespace {
 
-/// For a material that adding cannot do.
+/// Chooses a model for a material that adding cannot do.
 ModelChoice choose_beyond_adding(const Material& material, const std::string& refusal,
                                  ModelUse use) {
     const ModelChoice walk{Model::Walk, "auto: walk, because " + refusal};

@@ -6,8 +6,9 @@
 
 namespace reradiant {
 
-/// What a material is looked at for: in a measurement the walk runs on the host, which knows every
-/// stack; pictures use the device's, which does not go with hero wavelengths.
+/// A `ModelUse` is the purpose for which a model is chosen. In a measurement the walk runs on the
+/// host, which knows every stack. Pictures use the device's walk, which does not know every stack
+/// and does not work with hero wavelengths.
 enum class ModelUse { Measure, Render, RenderHero };
 
 struct ModelChoice {
@@ -15,13 +16,13 @@ struct ModelChoice {
     std::string reason;          ///< one line for the user; empty for a model asked for by name
 };
 
-/// Why adding cannot do a material, or nothing: it needs a diffuse substrate, no flakes and no
-/// films on rough interfaces.
+/// Returns why adding cannot do a material, or nothing if it can: it needs a diffuse substrate, no
+/// flakes and no films on rough interfaces.
 std::optional<std::string> adding_refusal(const Material& material);
 
-/// Why the device's walk cannot do a material, or nothing: an IOR that depends on wavelength sends
-/// its wavelengths different ways, a film between dielectrics splits them differently, and smooth
-/// flakes are mirrors at random places.
+/// Returns why the device's walk cannot do a material, or nothing if it can: an IOR that depends on
+/// wavelength sends its wavelengths different ways, a film between dielectrics splits them
+/// differently, and smooth flakes are mirrors at random places.
 std::optional<std::string> device_walk_refusal(const Material& material);
 
 /// The model that `requested` means for a material: what is named there, else what the material

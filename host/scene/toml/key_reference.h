@@ -26,20 +26,21 @@ public:
     KeyReference(const KeyReference&) = delete;
     KeyReference& operator=(const KeyReference&) = delete;
 
-    /// The one that lives on this thread, or null.
+    /// Returns the one that lives on this thread, or null.
     static KeyReference* current();
 
-    /// A table is known by its name and keys; its numbers ("[[light]] 3") are taken out of the
-    /// name.
+    /// Adds a table, which is known by its name and keys; numbers ("[[light]] 3") are taken out of
+    /// the name.
     void add_table(const std::string& name, const std::vector<std::string>& keys);
-    /// Where several readings say something, the longest text stays: it has the default.
+    /// Adds a key. If several readings describe the same one, the longest text is kept, since that
+    /// has the default.
     void add_key(const std::string& table, const std::string& key, const Key& about);
 
-    /// Types that a table may have: each wants a table of its own.
+    /// Adds types that a table may have; each of them needs a table of its own.
     void add_types(const std::vector<std::string>& types);
 
     const std::vector<Table>& tables() const { return tables_; }
-    /// Types for which no table "... (type)" was read while this lived.
+    /// Returns the types for which no table "... (type)" was read while this lived.
     std::vector<std::string> missing_types() const;
 
 private:

@@ -27,14 +27,15 @@ inline constexpr std::uintmax_t MAX_MESH_BYTES = std::uintmax_t{4} << 30;
 std::string read_file(const std::filesystem::path& file, const SourcePosition& at,
                       std::uintmax_t max_bytes = MAX_TEXT_BYTES);
 
-/// What one call of load_scene or load_material gathers while it reads.
+/// A `LoadState` gathers what one call of load_scene or load_material finds while it reads.
 class LoadState {
 public:
-    /// The file that `name` means where it stands at `at`: relative to that file's folder, then,
-    /// for names without a path, in spectra/ and in the folders of spectra/. Input Error at `at`
-    /// when there is none.
+    /// Returns the file that `name` means where it stands at `at`: relative to that file's folder,
+    /// then, for names without a path, in spectra/ and in the folders of spectra/. Throws an input
+    /// Error at `at` when there is none.
     std::filesystem::path resolve(const std::string& name, const SourcePosition& at) const;
-    /// The same, and reads its bytes into the digest, once however often it is named.
+    /// Resolves `name` as `resolve` does and adds the bytes of the file to the digest, once however
+    /// often it is named.
     std::filesystem::path resolve_and_digest(const std::string& name, const SourcePosition& at);
 
     void add_to_digest(const std::string& bytes);
@@ -45,12 +46,12 @@ public:
 
     /// Remembers a spectrum so that use outside its data can be warned about.
     void track(const Spectrum& spectrum, const SourcePosition& at, const std::string& name);
-    /// One warning for each tracked spectrum whose tables do not cover [from, to].
+    /// Logs one warning for each tracked spectrum whose tables do not cover [from, to].
     void warn_outside(double from_nm, double to_nm) const;
 
     std::vector<Texture> textures;     ///< Scene::textures
     std::vector<Image> images;         ///< Scene::images
-    std::vector<bool> image_is_linear; ///< of each image: it was read as data
+    std::vector<bool> image_is_linear; ///< true for each image that was read as data
     /// Textures that the values read now may refer to; null outside materials.
     TextureScope* texture_scope = nullptr;
 

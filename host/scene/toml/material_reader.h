@@ -5,8 +5,8 @@
 
 namespace reradiant {
 
-/// What a [material] or [[material]] table says: a material, or one per combination of texture
-/// levels, and what a Surface holds besides.
+/// A `MaterialReading` is the content of a [material] or [[material]] table: a material, or one per
+/// combination of texture levels, and what a Surface holds besides.
 struct MaterialReading {
     Material middle; ///< every texture at t = 1/2; the material itself when nothing is textured
     std::vector<Material> variants; ///< the last texture runs fastest; empty when not textured
@@ -29,13 +29,13 @@ MaterialReading read_preset(const std::string& preset, const SourcePosition& at,
 /// The [material.substrate] of a material.
 Substrate read_substrate(const TableReader& material, LoadState& state);
 
-/// A re-radiation at a key: fills matrix or fluorophores, and the reflectance. A matrix
+/// Reads the re-radiation at a key: fills matrix or fluorophores, and the reflectance. A matrix
 /// that breaks energy is refused at the key; what was repaired or breaks the photon balance is
 /// logged as a warning.
 void read_reradiation_key(const TableReader& table, const std::string& key, Substrate& substrate,
                           LoadState& state);
 
-/// Wavelengths at which a scene or material with no `bands_nm` is used.
+/// Returns the range of wavelengths at which a scene or material without `bands_nm` is used.
 std::array<double, 2> default_range_nm(bool fluorescent);
 
 } // namespace reradiant

@@ -11,8 +11,8 @@ const std::vector<std::string>& pigment_keys();
 /// True when the substrate is one of pigments or dyes, or has a key that only they have.
 bool has_pigments(const TableReader& substrate);
 
-/// Reads them and sets reflectance and, with a dye that emits, matrix (host/spectral/
-/// kubelka_munk.h; 300 to 780 nm by 5 nm).
+/// Reads the pigments and sets reflectance and, with a dye that emits, matrix
+/// (host/spectral/matrix/kubelka_munk.h; 300 to 780 nm by 5 nm).
 void read_pigments(const TableReader& reader, Substrate& substrate, LoadState& state);
 
 } // namespace reradiant

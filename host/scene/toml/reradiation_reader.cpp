@@ -76,7 +76,8 @@ void read_reradiation_key(const TableReader& table, const std::string& key, Subs
     const WavelengthGrid grid = grid_from_range(300.0, 780.0, 10.0);
     ReradiationMatrix matrix =
         matrix_from_fluorophores(substrate.fluorophores, substrate.reflectance, grid, grid);
-    // What was computed here cannot have been misread: of the warnings only that of photons counts.
+    // This matrix was computed and cannot have been misread, so only the warning about photons
+    // matters.
     const SourcePosition at = table.position_of_key(key);
     check_and_repair(matrix, at, state);
     if (const std::string warning = photon_warning(column_balance(matrix).photons, grid);

@@ -7,11 +7,11 @@
 
 namespace reradiant {
 
-/// A [[light]] table; `index` is for messages.
+/// Reads a [[light]] table; `index` is for messages.
 Light read_light(const toml::table& table, const std::string& file, std::size_t index,
                  LoadState& state);
 
-/// A [[shape]] table. `materials` maps names to indices into Scene::surfaces.
+/// Reads a [[shape]] table. `materials` maps names to indices into Scene::surfaces.
 Shape read_shape(const toml::table& table, const std::string& file, std::size_t index,
                  const std::map<std::string, int>& materials, LoadState& state);
 
@@ -20,7 +20,7 @@ Shape read_shape(const toml::table& table, const std::string& file, std::size_t 
 /// `center`, `edge_u`, `edge_v`. The image lies on it as a texture does.
 MeshShape read_heightfield(const TableReader& reader, LoadState& state);
 
-/// Both edges of a rectangle; fails at the edge that leaves it without an area.
+/// Reads both edges of a rectangle; fails at the edge that leaves it without an area.
 std::array<Vector3, 2> read_edges(const TableReader& reader);
 
 double vector_length(const Vector3& v);

@@ -13,10 +13,10 @@ namespace reradiant {
 /// of its own), the hash is that of the table as it is now and of the files that it names.
 Scene scene_from_table(const toml::table& table, const std::filesystem::path& file);
 
-/// The same of a material, as load_material reads it.
+/// Reads a material from such a table, as load_material does from a file.
 Material material_from_table(const toml::table& table, const std::filesystem::path& file);
 
-/// The table of a scene or material file, checked for nothing but its syntax.
+/// Reads the table of a scene or material file and checks nothing but its syntax.
 toml::table read_scene_table(const std::filesystem::path& file);
 
 } // namespace reradiant

@@ -32,8 +32,8 @@ DiskShape read_disk(const TableReader& reader) {
     return disk;
 }
 
-/// The upper three rows of a matrix, row after row: moves a mesh, and its normals by the inverse
-/// transpose.
+/// Moves a mesh by the key `transform`, which holds the upper three rows of a matrix, row after
+/// row, and its normals by the inverse transpose.
 void transform_mesh(const TableReader& reader, MeshShape& mesh) {
     reader.describe("transform", "array of 12 numbers");
     const auto values =
@@ -54,7 +54,7 @@ void transform_mesh(const TableReader& reader, MeshShape& mesh) {
             mesh.positions[k + static_cast<std::size_t>(c)] =
                 mesh_coordinate(moved[c], at, "a transformed coordinate");
     }
-    // Of a mirrored mesh the normals keep to the side that its triangles face.
+    // The normals of a mirrored mesh stay on the side that its triangles face.
     const Eigen::Matrix3d normals =
         linear.inverse().transpose() * (linear.determinant() < 0.0 ? -1.0 : 1.0);
     for (std::size_t k = 0; k + 2 < mesh.normals.size(); k += 3) {

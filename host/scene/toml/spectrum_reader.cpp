@@ -37,7 +37,7 @@ std::vector<std::string> keys_of_form(const std::string& form) {
     return {form, "scale"};
 }
 
-/// The form a table is in: the one key of FORMS that it holds.
+/// Returns the form that a table is in: the one key of FORMS that it holds.
 std::string form_of(const toml::table& table, const std::string& file, const std::string& name) {
     const SourcePosition at = position_of(file, table);
     std::vector<std::string> found;
@@ -111,7 +111,7 @@ Spectrum read_rgb(const TableReader& reader) {
     return reflectance_from_rgb({rgb[0] / scale, rgb[1] / scale, rgb[2] / scale}).scaled(scale);
 }
 
-/// Light around one wavelength, refused where that is in another unit.
+/// Reads light around one wavelength, which is refused if it is in another unit.
 Spectrum read_peak(const TableReader& reader, const std::string& form) {
     const NumberRange width = NumberRange::within(1e-3, 1e4);
     const double nm = reader.number(form, WAVELENGTH);
@@ -127,14 +127,14 @@ Spectrum read_peak(const TableReader& reader, const std::string& form) {
         require_seen(0.5 * width_nm);
         return Spectrum::line(nm, width_nm, scale);
     }
-    // Five sigma from its peak a Gaussian has 4e-6 of it.
+    // At five sigma from its peak a Gaussian has fallen to 4e-6 of it.
     const double sigma_nm = reader.number("sigma_nm", width);
     require_seen(5.0 * sigma_nm);
     return Spectrum::gaussian(nm, sigma_nm, scale);
 }
 
-/// What holds values of its own is multiplied by scale, a lamp's file too: whether its values are
-/// radiances or shares of the largest, no luminance is put in their place.
+/// Multiplies a spectrum that has values of its own by `scale`. This holds for the file of a lamp
+/// too: whether its values are radiances or shares of the largest, no luminance replaces them.
 Spectrum multiplied(const TableReader& reader, Spectrum spectrum) {
     const double scale = reader.number_or("scale", 1.0, SCALE);
     return scale == 1.0 ? std::move(spectrum) : spectrum.scaled(scale);
@@ -162,7 +162,7 @@ Spectrum read_form(const TableReader& reader, const std::string& form, LoadState
 Spectrum read_node(const toml::node& node, const std::string& file, const SourcePosition& at,
                    const std::string& name, LoadState& state);
 
-/// low + t (high - low) at the level that the texture stands at.
+/// Reads a textured spectrum: low + t (high - low) at the level that the texture stands at.
 Spectrum read_textured(const toml::node& node, const std::string& file, const std::string& name,
                        LoadState& state) {
     const TextureReference reference = read_texture_reference(node, file, name, state);

@@ -5,7 +5,7 @@
 
 namespace reradiant {
 
-/// What values a spectrum may take where it is used.
+/// `SpectrumLimits` are the values that a spectrum may take where it is used.
 struct SpectrumLimits {
     double low = 0.0;
     double high = MAX_SPECTRAL_VALUE;
@@ -23,7 +23,8 @@ struct SpectrumLimits {
 /// element, or in the spectrum's own file.
 Spectrum read_spectrum_key(const TableReader& table, const std::string& key,
                            const SpectrumLimits& limits, LoadState& state);
-/// The same for a node of its own; `name` is for messages.
+/// Reads a spectrum from a node, as `read_spectrum_key` does from a key; `name` is what messages
+/// call it.
 Spectrum read_spectrum_node(const toml::node& node, const std::string& file,
                             const SourcePosition& at, const std::string& name,
                             const SpectrumLimits& limits, LoadState& state);

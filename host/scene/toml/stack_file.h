@@ -8,8 +8,8 @@
 
 namespace reradiant {
 
-/// The layers of a table of MATERIAL.toml, as load_stack reads them from a file; paths in it start
-/// at the file's folder, errors name the file.
+/// Reads the layers from a table as `load_stack` does from a file. Paths in the table start at the
+/// folder of `file`, which errors name.
 LayerStack stack_from_table(const toml::table& table, const std::filesystem::path& file);
 
 } // namespace reradiant

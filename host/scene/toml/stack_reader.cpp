@@ -18,8 +18,8 @@ namespace {
 
 constexpr double MAX_FILM_NM = 1e5;
 
-/// How rough a surface is and what its facets do to light: the same keys for an interface, a
-/// conductor and a flake.
+/// `Roughness` says how rough a surface is and how its facets scatter light. An interface, a
+/// conductor and a flake have the same keys for it.
 struct Roughness {
     Distribution distribution = Distribution::Ggx;
     double alpha = 0.0;
@@ -28,7 +28,7 @@ struct Roughness {
 const std::vector<std::string> ROUGHNESS_KEYS{"roughness_deg", "alpha", "distribution",
                                               "scattering"};
 
-/// Width from `roughness_deg` or `alpha`, 0 when neither is given.
+/// Reads the width from `roughness_deg` or `alpha`; returns 0 when neither is given.
 double read_alpha(const TableReader& reader, Distribution distribution, LoadState& state) {
     if (reader.has("roughness_deg") && reader.has("alpha"))
         reader.fail("alpha", "both roughness_deg and alpha are given", "give one of them");

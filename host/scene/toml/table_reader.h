@@ -30,10 +30,11 @@ struct NumberRange {
 /// Coordinates and lengths: Embree drops primitives beyond 1.8e18 without a word.
 inline constexpr double MAX_COORDINATE = 1e18;
 
-/// A finite number in range at a node; `name` and `position` are for the message.
+/// Returns a finite number in range at a node; `name` and `position` are for the message.
 double number_at(const toml::node& node, const SourcePosition& position, const std::string& name,
                  const NumberRange& range);
-/// An array of `count` numbers (any count when 0); element errors are placed at the element.
+/// Returns an array of `count` numbers (any count when 0); element errors are placed at the
+/// element.
 std::vector<double> numbers_at(const toml::node& node, const std::string& file,
                                const SourcePosition& position, const std::string& name,
                                std::size_t count, const NumberRange& range);
@@ -52,7 +53,7 @@ public:
     const std::string& file() const { return file_; }
     const std::string& name() const { return name_; }
     SourcePosition position() const { return position_of(file_, *table_); }
-    /// Place of the key, or of the table when the key is absent.
+    /// Returns the place of the key, or of the table when the key is absent.
     SourcePosition position_of_key(const std::string& key) const;
     [[noreturn]] void fail(const std::string& key, const std::string& what_is_wrong,
                            const std::string& remedy = {}) const;
@@ -61,7 +62,7 @@ public:
     void describe(const std::string& key, const std::string& kind,
                   const std::string& otherwise = {}) const;
 
-    /// The node of a key; fails at the table when it is missing.
+    /// Returns the node of a key; fails at the table when it is missing.
     const toml::node& required(const std::string& key) const;
     const toml::node* find(const std::string& key) const;
 
@@ -72,7 +73,7 @@ public:
     std::string text(const std::string& key) const;
     std::string text_or(const std::string& key, const std::string& otherwise) const;
     bool flag_or(const std::string& key, bool otherwise) const;
-    /// One of the names given; the message lists them.
+    /// Returns one of the names given, which the message lists.
     std::string choice(const std::string& key, const std::vector<std::string>& names) const;
     /// Three numbers, each at most MAX_COORDINATE in size.
     Vector3 vector(const std::string& key) const;
@@ -85,7 +86,7 @@ public:
 private:
     const toml::table* table_;
     std::string file_, name_;
-    std::string path_; ///< of the reference; filled only while a KeyReference lives
+    std::string path_; ///< name in the reference; filled only while a KeyReference lives
     std::vector<std::string> known_keys_;
 };
 
@@ -93,7 +94,7 @@ private:
 std::string type_of_table(const toml::table& table, const std::string& file,
                           const std::string& name, const std::vector<std::string>& types);
 
-/// "did you mean "x"?", or the list when nothing is near.
+/// Returns "did you mean "x"?", or the list when nothing is near.
 std::string suggestion(const std::string& given, const std::vector<std::string>& known);
 
 } // namespace reradiant

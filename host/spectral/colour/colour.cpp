@@ -57,7 +57,8 @@ const Observer& observer() {
     return result;
 }
 
-/// Where the product of a spectrum and the observer has kinks, within the observer's range.
+/// Returns the wavelengths at which the product of a spectrum and the observer has kinks, within
+/// the observer's range.
 std::vector<double> pieces_nm(const Spectrum& spectrum) {
     const std::vector<double>& nodes = cie_1931_2_degree().wavelengths_nm;
     std::vector<double> points = spectrum.breakpoints_nm();
@@ -120,7 +121,7 @@ Spectrum illuminant(const std::string& name) {
     if (name == "E")
         return Spectrum::constant(100.0);
     NumberTable table = read_number_table(spectra_directory() / "illuminants" / (name + ".csv"), 2);
-    // Where the CIE gives no values there is no light, rather than the last value for ever.
+    // There is no light where the CIE gives no values, rather than the last value for ever.
     constexpr double just_outside_nm = 1e-6;
     std::vector<double>& nm = table.columns[0];
     std::vector<double>& power = table.columns[1];

@@ -147,7 +147,7 @@ Sums sum_over_bands(const WavelengthGrid& bands, const Exitance& exitance,
     return sums;
 }
 
-/// Over whole nanometres, those at the very ends by half.
+/// Sums over whole nanometres, those at the very ends by half.
 Sums sum_over_nanometres(const WavelengthGrid& bands, const Exitance& exitance,
                          const Spectrum& illuminant, double from_nm, double to_nm) {
     const LampAtNanometres lamp(illuminant);
@@ -185,8 +185,9 @@ bool reaches_far_enough(const WavelengthGrid& bands) {
     return bands.from_nm < 400.5 && bands.to_nm() > 699.5;
 }
 
-/// Undefined (NaN) where the light has less than 1e-9 of its largest value: no instrument would see
-/// it, and the tail of a Gaussian lamp would give factors of 1e300.
+/// Fills in the radiance factors. They are undefined (NaN) where the light has less than 1e-9 of
+/// its largest value: no instrument would see it, and the tail of a Gaussian lamp would give
+/// factors of 1e300.
 void fill_radiance_factors(MatrixColour& colour, const WavelengthGrid& bands,
                            const Exitance& exitance, const Spectrum& illuminant) {
     std::vector<double> lights = illuminant.at(colour.nm);
@@ -239,7 +240,8 @@ double unseen_white(const WavelengthGrid& bands, const Spectrum& illuminant) {
     return share;
 }
 
-/// Where the excitation bands leave out the reflectance of emission bands; empty where they do not.
+/// Returns a sentence where the excitation bands leave out the reflectance of emission bands; empty
+/// where they do not.
 std::string unknown_reflectance(const ReradiationMatrix& matrix) {
     const WavelengthGrid& bands = matrix.excitation;
     const double missing =

@@ -9,8 +9,8 @@
 
 namespace reradiant {
 
-/// What a standard asks of a colour: a region of the CIE 1931 chromaticity diagram and a smallest
-/// luminance factor.
+/// A `ColourPolygon` is what a standard asks of a colour: a region of the CIE 1931 chromaticity
+/// diagram and a smallest luminance factor.
 struct ColourPolygon {
     std::string name;
     std::string illuminant;                     ///< as `illuminant` of colour.h knows it

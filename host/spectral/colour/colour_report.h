@@ -34,7 +34,7 @@ struct ColourReport {
 ColourReport colour_report(const ReradiationMatrix& matrix, const std::string& name,
                            const Spectrum& illuminant, ColourSum sum);
 
-/// What `colour --json` writes for one illuminant.
+/// Returns what `colour --json` writes for one illuminant.
 nlohmann::ordered_json colour_report_json(const ColourReport& report);
 
 } // namespace reradiant

@@ -51,7 +51,8 @@ Hues compare_hues(double h1, double h2, bool grey) {
     return {difference, mean};
 }
 
-/// From the chromaticities of IEC 61966-2-1: the printed matrix is this, rounded.
+/// Returns the matrix from linear sRGB to XYZ, from the chromaticities of IEC 61966-2-1: the
+/// printed matrix is this, rounded.
 Eigen::Matrix3d srgb_matrix() {
     Eigen::Matrix3d primaries;
     primaries << 0.64 / 0.33, 0.30 / 0.60, 0.15 / 0.06, 1.0, 1.0, 1.0, 0.03 / 0.33, 0.10 / 0.60,

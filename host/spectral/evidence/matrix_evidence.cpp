@@ -9,7 +9,8 @@ namespace reradiant {
 namespace {
 
 constexpr double noise_deviations = 5.0;
-/// Of the coarser step. A bandpass as wide as the step reaches the next band.
+/// Entries beside the diagonal are within this many of the coarser steps of it: a bandpass as wide
+/// as the step reaches the next band.
 constexpr double spill_steps = 1.5;
 
 /// The energy of one side of the diagonal, with its noise should it hold no more than that.

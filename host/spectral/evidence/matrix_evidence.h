@@ -4,9 +4,9 @@
 
 namespace reradiant {
 
-/// What the numbers of a matrix say of how they are to be read. Entries that were not measured
-/// (NaN) count as 0, and so does the fluorescence beside the diagonal in the sums of energy, into
-/// which a monochromator's bandpass spills the reflectance.
+/// `MatrixEvidence` holds what the numbers of a matrix say of how they are to be read. Entries that
+/// were not measured (NaN) count as 0, and so does the fluorescence beside the diagonal in the sums
+/// of energy, into which a monochromator's bandpass spills the reflectance.
 struct MatrixEvidence {
     double stokes = 0.0;      ///< energy in emission above the excitation, at least 0
     double anti_stokes = 0.0; ///< the same below the excitation
@@ -22,7 +22,7 @@ struct MatrixEvidence {
 
 MatrixEvidence evidence_of(const ReradiationMatrix& matrix);
 
-/// The same numbers with rows and columns exchanged, as if read with the other orientation.
+/// Returns the same numbers with rows and columns exchanged, as if read with the other orientation.
 ReradiationMatrix exchanged(const ReradiationMatrix& matrix);
 
 /// Photons that a strong or a weak fluorescent sample re-emits of those in its best excitation

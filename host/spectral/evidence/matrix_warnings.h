@@ -12,7 +12,8 @@ namespace reradiant {
 /// fractions divided by 100 once more. Nothing of anti-Stokes emission that the matrix declares.
 std::vector<std::string> misreading_warnings(const ReradiationMatrix& matrix);
 
-/// A sentence where excitation bands return more photons than they receive.
+/// Returns a sentence where excitation bands return more photons than they receive; else an empty
+/// text.
 std::string photon_warning(const std::vector<double>& photons, const WavelengthGrid& excitation);
 
 /// misreading_warnings, and where there are none, excitation bands that return more energy or

@@ -40,8 +40,9 @@ ScatterContrast::neighbour(int o, int i, int down, int right, const ScatterStenc
     }
 }
 
-/// What the neighbours in one direction say of an entry: linear between them. The diagonal bounds
-/// what a fluorophore emits, so that beside it only those farther out say something.
+/// Returns what the neighbours in one direction say of an entry, by linear interpolation between
+/// them. The diagonal bounds what a fluorophore emits, so that beside it only those farther out say
+/// something.
 std::optional<double> ScatterContrast::expected(int o, int i, int down, int right,
                                                 const ScatterStencil& stencil) const {
     const auto after = neighbour(o, i, down, right, stencil);

@@ -7,14 +7,15 @@
 
 namespace reradiant {
 
-/// What is known of a measured matrix before lines of scatter are looked for in it.
+/// `ScatterSettings` holds what is known of a measured matrix before lines of scatter are looked
+/// for in it.
 struct ScatterSettings {
     double spill_nm = 0.0; ///< entries this near to the diagonal are known to hold reflected light
     bool anti_stokes = false; ///< emission below excitation counts, too
 };
 
-/// Where the neighbours lie that an entry is compared with: farther than the clearance from the
-/// line, and from the line moved by shift_nm along the emission.
+/// A `ScatterStencil` says where the neighbours lie that an entry is compared with: farther than
+/// the clearance from the line, and from the line moved by shift_nm along the emission.
 struct ScatterStencil {
     double shift_nm, clearance_nm;
 };
@@ -35,10 +36,10 @@ public:
     /// Entries that say something: measured, where fluorescence may be, and beyond the spill.
     bool is_usable(int o, int i) const;
 
-    /// How far an entry exceeds what its neighbours along the emission and those along the
+    /// Returns how far an entry exceeds what its neighbours along the emission and those along the
     /// excitation say, whichever say more; empty where one of the two has none. A narrow band of
-    /// either spectrum stands out of one of the two only, a line that moves with the excitation of
-    /// both.
+    /// either spectrum stands out of one of the two only, a line that moves with the excitation
+    /// stands out of both.
     std::optional<double> operator()(int o, int i, const ScatterStencil& stencil) const;
 
 private:

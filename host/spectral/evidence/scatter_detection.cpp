@@ -17,7 +17,7 @@ struct Limits {
     double deviations, over_largest;
 };
 constexpr Limits line_limits{5.0, 1.5};
-/// Of the feet of a line that was found.
+/// The limits of the feet of a line that was found.
 constexpr Limits feet_limits{2.5, 0.75};
 
 /// Share of the excitations that must show a line, and their number. Beside the diagonal small
@@ -26,14 +26,14 @@ struct Excitations {
     double share, number;
 };
 constexpr Excitations of_first_order{0.5, 3.0}, of_higher_orders{1.0 / 3.0, 2.0};
-/// Times its half width that a line is long: a peak is not.
+/// A line is at least this many times as long as its half width: a peak is not.
 constexpr double least_elongation = 4.0;
-/// Twice the reach of bandpasses of 20 nm.
+/// No line has a larger half width: this is twice the reach of bandpasses of 20 nm.
 constexpr double widest_nm = 60.0;
 /// Bands beside the line, on each side, that it is compared with.
 constexpr int controls_a_side = 8;
 constexpr std::size_t fewest_controls = 4;
-/// Of the largest entry elsewhere: less than this does no harm.
+/// A line is at least this share of the largest entry elsewhere high: less does no harm.
 constexpr double least_height = 1e-3;
 /// 1.4826 times the median of |x| is the standard deviation of normal noise (Hampel 1974).
 constexpr double deviations_of_median = 1.4826;
@@ -49,7 +49,7 @@ struct ColumnContrast {
     double on_line;
     std::vector<double> beside; ///< sizes
 
-    /// What the contrast on the line must exceed.
+    /// Returns what the contrast on the line must exceed.
     double limit(const Limits& limits) const {
         return std::max(limits.deviations * deviations_of_median * median(beside),
                         limits.over_largest * *std::max_element(beside.begin(), beside.end()));
@@ -104,7 +104,7 @@ public:
 private:
     bool is_first() const { return order_ == ScatterOrder::First; }
 
-    /// Of a line whose last ring is this.
+    /// Returns the half width of a line whose last ring is this.
     double half_width_nm(int ring) const {
         return is_first() ? spill_nm_ + (ring + 1) * step_nm_ : (ring + 0.5) * step_nm_;
     }
@@ -167,7 +167,7 @@ private:
         return std::max(least_height * largest, std::numeric_limits<double>::min());
     }
 
-    /// Over 1 when a ring stands out of what lies beyond another.
+    /// Returns a number over 1 when a ring stands out of what lies beyond another.
     double prominence(int ring, int clearance, const Limits& limits) const {
         const std::vector<ColumnContrast> columns = contrasts(ring, clearance);
         const Excitations least = is_first() ? of_first_order : of_higher_orders;

@@ -13,7 +13,7 @@ namespace reradiant {
 Eigen::MatrixXd entries_on(const ScatterLine& line, const WavelengthGrid& emission,
                            const WavelengthGrid& excitation);
 
-/// Whether both bands have the same centre, to 1e-6 of the smaller step.
+/// Returns whether both bands have the same centre, to 1e-6 of the smaller step.
 bool on_diagonal(const WavelengthGrid& emission, int o, const WavelengthGrid& excitation, int i);
 
 } // namespace reradiant

@@ -16,7 +16,7 @@ namespace {
 /// Values of unit 1 stay below this but for outliers; those of a hundred times that are permille.
 constexpr double largest_of_unit_one = 1.5;
 
-/// As a shell takes it.
+/// Returns the name of a file as a shell takes it, in quotation marks where it needs them.
 std::string quoted(const std::string& file) {
     const bool is_plain = std::all_of(file.begin(), file.end(), [](unsigned char c) {
         return std::isalnum(c) != 0 || c >= 0x80 ||
@@ -31,7 +31,7 @@ std::string quoted(const std::string& file) {
     return text + "'";
 }
 
-/// What the values of a table speak for, and in which words.
+/// A `Guess` says what the values of a table speak for, in words for an error.
 class Guess {
 public:
     explicit Guess(const UndeclaredTable& table) : table_(table) {
@@ -70,7 +70,7 @@ public:
         return fmt::format("{}", fmt::join(words, " "));
     }
 
-    /// What the values do not tell.
+    /// Returns the options that the values do not settle, in brackets; empty where there are none.
     std::string doubt() const {
         std::vector<std::string> choices;
         if (!table_.rows_are_emission && !rows_)

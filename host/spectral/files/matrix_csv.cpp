@@ -90,7 +90,7 @@ private:
                           "spectra/README.md shows what a table of re-radiation looks like");
     }
 
-    /// What the values say of the declaration that lacks goes into the error.
+    /// Refuses a table that lacks a declaration; the error says what its values speak for.
     [[noreturn]] void refuse_undeclared(const std::vector<TextToken>& headings,
                                         const std::optional<LongColumns>& columns,
                                         const SourcePosition& at) {
@@ -177,7 +177,7 @@ private:
         return matrix;
     }
 
-    /// Of percent and permille 15 digits are kept, so that 0.47 % becomes 0.0047 as it would be
+    /// Keeps 15 digits of percent and permille, so that 0.47 % becomes 0.0047 as it would be
     /// written: neither a product nor a quotient of doubles does that.
     static void scale(Eigen::MatrixXd& values, double factor) {
         values *= factor;

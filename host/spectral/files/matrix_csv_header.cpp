@@ -37,7 +37,8 @@ double step_value(const TextReader& reader, TextToken value) {
     return reader.wavelength_nm(value); // refuses a decimal comma rather than cutting it off
 }
 
-/// What a value's unit may be called where it is 1. The unit of the axes says nothing of values.
+/// Returns whether `unit` names a unit of values that is 1. The unit of the axes, nm, says nothing
+/// of values and passes too.
 bool is_unit_one(const std::string& unit) {
     return is_one_of(std::array{"-", "none", "unity", "unit 1", "fraction", "ratio",
                                 "dimensionless", "nm", "w/w"},
@@ -114,7 +115,8 @@ void refuse_misspelt(const TextReader& reader, const HeaderEntry& entry) {
                               fmt::format("did you mean '{}'?", key));
 }
 
-/// Where the file says what its values are multiplied by.
+/// Returns the place where the file says what its values are multiplied by; empty where it does
+/// not.
 std::optional<SourcePosition> unit_place(const CsvHeader& header) {
     for (const char* key : {"factor", "scale", "scale-factor", "scaling", "scaling-factor",
                             "multiplier", "unit", "units", "value-unit", "value-units", "y-units"})

@@ -13,7 +13,8 @@
 
 namespace reradiant {
 
-/// What the '#' lines say. Quantity and orientation are never guessed.
+/// A `CsvHeader` holds what the '#' lines of a re-radiation CSV say. Quantity and orientation are
+/// never guessed.
 struct CsvHeader {
     std::optional<MatrixQuantity> quantity;
     std::optional<bool> rows_are_emission;
@@ -26,7 +27,7 @@ struct CsvHeader {
     std::optional<double> emission_step_nm, excitation_step_nm; ///< for an axis of one band
     std::map<std::string, SourcePosition> places;               ///< of the keys, by name
 
-    /// What the values are multiplied by.
+    /// Returns the factor that the values are multiplied by.
     double scale() const;
 };
 
@@ -49,20 +50,22 @@ void add_told(const TextReader& reader, CsvHeader& header, const TableForm& told
 /// factor that nobody told to apply.
 void require_consistent_unit(const CsvHeader& header, const TableForm& told);
 
-/// What a column of the long form holds, by its heading: excitation_nm, "Ex (nm)" and so on.
+/// A `LongRole` is what a column of the long form holds, by its heading: excitation_nm, "Ex (nm)"
+/// and so on.
 enum class LongRole { None, Excitation, Emission, Value };
 LongRole long_role(std::string_view heading);
 /// True for the headings excitation_nm,emission_nm,value in any order and of any such spelling.
 bool names_long_form(const std::vector<TextToken>& headings);
 /// Wavelengths in nm, three at least, that ascend or descend: all cells from one on.
 bool are_bands(const std::vector<TextToken>& cells, std::size_t from);
-/// What a line of cells above the first row is, where `next` is the line of cells behind it.
+/// A `HeadingKind` is what a line of cells above the first row is. heading_kind returns it, where
+/// `next` is the line of cells behind it.
 enum class HeadingKind { Title, Headings, HeadingsWithoutCorner, Row };
 HeadingKind heading_kind(std::vector<TextToken> cells, std::vector<TextToken> next);
 /// The line of cells that the reader will give next; empty where there is none.
 std::vector<TextToken> next_cells(const TextReader& reader);
 
-/// Whether a word is the first of two in any case; input Error where it is neither.
+/// Returns whether a word is the first of two in any case; input Error where it is neither.
 bool is_first_of(const TextReader& reader, const TextToken& value, std::string_view first,
                  std::string_view second);
 

@@ -27,7 +27,7 @@ struct PercentSigns {
 /// Reads the cells of a line, and what stands in them.
 class CellReader {
 public:
-    /// What '#' lines say below the headings counts too.
+    /// Lines of '#' below the headings count too: `header` takes what they say.
     CellReader(TextReader& reader, CsvHeader& header, const WavelengthUnit& unit)
         : reader_(reader), header_(header), unit_(unit) {}
 
@@ -64,12 +64,13 @@ WideTable read_wide(CellReader& cells, const std::vector<TextToken>& headings);
 /// The table with its rows and columns in the order of wavelengths, rows = emission.
 CsvBody sorted_body(WideTable table, bool rows_are_emission);
 
-/// Which columns of the long form hold what.
+/// `LongColumns` says which columns of the long form hold what.
 struct LongColumns {
     std::size_t excitation = 0, emission = 1, value = 2;
 };
 
-/// Empty for headings of the wide form. Input Error where a column of the long form lacks.
+/// Returns the columns that the headings name; empty for headings of the wide form. Input Error
+/// where a column of the long form lacks.
 std::optional<LongColumns> long_columns(const TextReader& reader,
                                         const std::vector<TextToken>& headings);
 CsvBody read_long(CellReader& cells, const LongColumns& columns, Gaps gaps);

@@ -247,7 +247,8 @@ void set_attributes(Imf::Header& header, const ReradiationMatrix& matrix) {
     grid("reradiant:excitation", matrix.excitation);
 }
 
-/// Without entries that are impossible: emission below the excitation, and zero.
+/// Returns the channels of a matrix without entries that are impossible: emission below the
+/// excitation, and zero.
 std::vector<Channel> channels_to_write(const ReradiationMatrix& matrix) {
     std::vector<Channel> channels;
     for (int i = 0; i < matrix.excitation.count; ++i) {

@@ -39,8 +39,9 @@ void scale_off_diagonal(ReradiationMatrix& matrix, double factor);
 /// Input Error at the file for a model with an entry below its excitation and no leave for it.
 void refuse_undeclared_anti_stokes(const ReradiationMatrix& matrix, const SourcePosition& position);
 
-/// Where a table says that it is a re-radiation CSV: in a line `# reradiation`, by its quantity or
-/// orientation, or by the headings of the long form or of three wavelengths. Empty for a spectrum.
+/// Returns the place where a table says that it is a re-radiation CSV: in a line `# reradiation`,
+/// by its quantity or orientation, or by the headings of the long form or of three wavelengths.
+/// Empty for a spectrum.
 std::optional<SourcePosition> declares_reradiation(const std::filesystem::path& file);
 ReradiationMatrix read_matrix_csv(const std::filesystem::path& file, Gaps gaps = Gaps::Refused,
                                   const TableForm& form = {});

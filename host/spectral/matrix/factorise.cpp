@@ -33,7 +33,8 @@ struct Candidate {
     double cost = 0.0;
 };
 
-/// Uniform in [0, 1), the same on every machine (splitmix64; Steele, Lea and Flood 2014).
+/// `FixedRandom` draws numbers uniform in [0, 1), the same on every machine (splitmix64; Steele,
+/// Lea and Flood 2014).
 class FixedRandom {
 public:
     explicit FixedRandom(std::uint64_t seed) : state_(seed) {}
@@ -156,7 +157,7 @@ void improve(const MaskedLeastSquares& problem, const Round& round, Candidate& c
     problem.descend(trial, round.sweeps);
     const FactorPair descended = trial;
     problem.approach(trial, std::min(steps, round.approach_steps));
-    // What is set to zero at the end of an approach may cost more than it gained.
+    // The entries that are set to zero at the end of an approach may cost more than it gained.
     if (problem.cost(trial) > problem.cost(descended))
         trial = descended;
     candidate = {trial, problem.cost(trial)};

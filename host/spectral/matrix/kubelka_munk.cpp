@@ -95,7 +95,7 @@ Matrix opaque_reflectance(const Coefficients& c) {
     return inverse_lower(one + w) * (one - w);
 }
 
-/// What a slab in black surroundings reflects and transmits, the same from both sides.
+/// A `Slab` is what a slab in black surroundings reflects and transmits, the same from both sides.
 struct Slab {
     Matrix reflectance, transmittance;
 };
@@ -125,7 +125,8 @@ Slab thin_slab(const Coefficients& c, double h) {
     return slab;
 }
 
-/// Doubled until it is as thick as the layer (van de Hulst 1963), then laid on the backing.
+/// Returns the reflectance of a layer: a thin slab is doubled until it is as thick as the layer
+/// (van de Hulst 1963), then laid on the backing.
 Matrix finite_reflectance(const Coefficients& c, double thickness, const Vector& backing) {
     constexpr double THIN = 0.1;
     const double depth = (c.absorption + 2.0 * c.scattering).maxCoeff() * thickness;

@@ -14,7 +14,7 @@ namespace reradiant {
 namespace {
 
 constexpr double same_wavelength_in_steps = 1e-6;
-constexpr double negative_rounding = 1e-6; // of a model: below this it is an error
+constexpr double negative_rounding = 1e-6; // a model's entry below minus this is an error
 constexpr double balance_slack = 1e-6;
 
 void require_shape(const ReradiationMatrix& matrix) {
@@ -44,7 +44,7 @@ void require_finite(const ReradiationMatrix& matrix) {
                     fmt::format("the value at {} is not finite", entry_name(matrix, o, i)));
 }
 
-/// What a model may not hold: clearly negative entries, and emission below excitation.
+/// Refuses what a model may not hold: clearly negative entries, and emission below excitation.
 void refuse_impossible_entries(const ReradiationMatrix& matrix) {
     for (int i = 0; i < matrix.excitation.count; ++i) {
         for (int o = 0; o < matrix.emission.count; ++o) {

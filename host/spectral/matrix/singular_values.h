@@ -12,8 +12,8 @@ struct ThinSvd {
     Eigen::MatrixXd v;
 };
 
-/// By divide and conquer (Eigen). One place for all callers: the template takes most of a minute to
-/// compile.
+/// Decomposes a matrix by divide and conquer (Eigen). There is one place for all callers: the
+/// template takes most of a minute to compile.
 ThinSvd thin_svd(const Eigen::MatrixXd& matrix);
 
 /// Singular values alone, descending.

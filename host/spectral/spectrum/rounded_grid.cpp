@@ -11,7 +11,7 @@ namespace {
 constexpr double equal_in_steps = 1e-6;      // as grid_from_centres has it
 constexpr double rounding_of_doubles = 1e-9; // of wavelengths, in nm
 
-/// From the first to the last of at least two centres.
+/// Returns the grid from the first to the last of at least two centres.
 WavelengthGrid grid_between_ends(const std::vector<RoundedWavelength>& centres) {
     const int count = static_cast<int>(centres.size());
     return {centres.front().nm, (centres.back().nm - centres.front().nm) / (count - 1), count};

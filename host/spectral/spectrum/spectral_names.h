@@ -8,8 +8,8 @@
 
 namespace reradiant {
 
-// How channels of spectral EXR images write wavelengths (Fichet, Pacanowski and Wilkie, "An OpenEXR
-// Layout for Spectral Images", JCGT 10(3), 2021).
+// Reads and writes wavelengths as they stand in the names of channels of spectral EXR images
+// (Fichet, Pacanowski and Wilkie, "An OpenEXR Layout for Spectral Images", JCGT 10(3), 2021).
 
 /// Takes "380,000000nm" from the front of the text: decimal comma or point, an exponent or none, m
 /// or Hz behind a prefix of the SI. Nothing, and the text as it was, for something else. The same

@@ -36,7 +36,7 @@ double field_wavelength_nm(const std::string& name, const SourcePosition& at) {
     return 0.0;
 }
 
-/// What a column of the data holds.
+/// A `Field` says what a column of the data holds.
 struct Field {
     enum class Kind { Other, Value, Wavelength, Decimal, Percent } kind = Kind::Other;
     double nm = 0.0; ///< of Kind::Value

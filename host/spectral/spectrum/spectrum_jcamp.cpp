@@ -30,7 +30,8 @@ std::string plain_label(std::string_view label) {
     return plain;
 }
 
-/// Between the words of a unit; a minus is none of them, for it may take from 1.
+/// These characters stand between the words of a unit; a minus is none of them, for it may take
+/// from 1.
 constexpr std::string_view between_words = " \t_()[],";
 
 std::string upper_case(std::string_view text) {

@@ -63,7 +63,7 @@ private:
                 static_cast<int>(offset - start) + 1};
     }
 
-    /// Of the '<' before the element's name.
+    /// Returns the place of the '<' before the element's name.
     SourcePosition position(const pugi::xml_node& node) const {
         return position_at(std::max<std::ptrdiff_t>(1, node.offset_debug()) - 1);
     }

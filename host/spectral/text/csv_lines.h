@@ -29,7 +29,7 @@ struct HeaderEntry {
     TextToken key, value;
     std::string name; ///< the key in lower case, its words joined by '-'
 };
-/// Empty for a remark of another form.
+/// Returns the entry of a line; empty for a remark of another form.
 std::optional<HeaderEntry> header_entry(const TextReader& reader, std::string_view line);
 /// Letters more, less, other or swapped with their neighbour that make one word the other (optimal
 /// string alignment).

@@ -104,7 +104,7 @@ std::vector<Piece> cells_of_line(std::string_view text, std::size_t from, std::s
     return pieces.size() > 1 && are_numbers ? pieces : std::vector<Piece>{};
 }
 
-/// What the cells of a table say of their decimal mark.
+/// `MarkedNumbers` collects what the cells of a table say of their decimal mark.
 class MarkedNumbers {
 public:
     MarkedNumbers(std::string_view text, const std::string& file) : text_(text), file_(file) {
@@ -160,7 +160,8 @@ private:
     SourcePosition point_at_, separating_at_;
 };
 
-/// Whether a table is worth a look cell by cell: most are not.
+/// Returns whether a table has a comma between two digits and so is worth a look cell by cell: most
+/// have none.
 bool has_comma_in_digits(std::string_view text) {
     for (auto at = text.find(','); at != none; at = text.find(',', at + 1))
         if (at > 0 && at + 1 < text.size() && is_digit(text[at - 1]) && is_digit(text[at + 1]))

@@ -11,7 +11,8 @@ struct KeyValue {
     std::string value;
 };
 
-/// What a line above a table tells by a key; Kind::None for headings, titles and any other key.
+/// Returns what a line above a table tells by a key; Kind::None for headings, titles and any other
+/// key.
 KeyValue key_value_of(std::string_view line);
 
 /// True for a line "unit: percent", "Scale factor 0.01" that tells how values are to be read.

@@ -14,7 +14,8 @@ struct NumberTable {
     std::vector<std::vector<double>> columns;
 };
 
-/// The same as read, in any order, with the place of every row.
+/// An `UnsortedTable` holds the columns of a NumberTable as they were read, in any order, with the
+/// place of every row.
 struct UnsortedTable {
     std::string file;
     std::vector<std::vector<double>> columns; ///< the first in nm

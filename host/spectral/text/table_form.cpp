@@ -9,7 +9,7 @@ namespace reradiant {
 
 namespace {
 
-/// Whether a word is the first of two; input Error where it is neither.
+/// Returns whether a word is the first of two; input Error where it is neither.
 bool is_first(const char* name, const std::string& word, const std::string& first,
               const std::string& second) {
     if (word != first && word != second)

@@ -15,7 +15,7 @@ struct HeadLine {
     bool is_comment = false;
 };
 
-/// What the lines above a table say of its columns.
+/// `ColumnUnits` holds what the lines above a table say of its columns.
 struct ColumnUnits {
     WavelengthUnit wavelength;
     UnitSource source = UnitSource::Assumed;

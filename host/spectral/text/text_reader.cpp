@@ -15,7 +15,8 @@ namespace {
 constexpr double largest_magnitude = 1e30;
 constexpr double largest_wavelength_nm = 1e6;
 constexpr std::string_view blanks = " \t\r\f\v";
-/// As pandas, R, spreadsheets, numpy's masked arrays and instruments write a value that is missing.
+/// These words stand for a value that is missing, as pandas, R, spreadsheets, numpy's masked arrays
+/// and instruments write it.
 constexpr std::array<std::string_view, 20> gap_words{
     "",     "nan", "+nan", "-nan", "na",  "n/a", "#n/a",    "#na",    "<na>", "null",
     "none", "nil", "-",    "--",   "---", ".",   "missing", "masked", "nd",   "n.d."};

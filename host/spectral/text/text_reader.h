@@ -23,9 +23,9 @@ struct TextToken {
 /// alone; a byte order mark and a control-Z at the end are skipped.
 class TextReader {
 public:
-    /// Input Error when the file cannot be read, is no text (see read_text_file), or says that it
-    /// is of another format than the one that is read here. Decimal commas of tables become points
-    /// where they are none but that, or are said to be it.
+    /// Opens a file. Input Error when it cannot be read, is no text (see read_text_file), or says
+    /// that it is of another format than the one that is read here. Decimal commas of tables become
+    /// points where nothing else can be meant, or where `decimal` says that they are such.
     explicit TextReader(const std::filesystem::path& file, TextFormat expected = TextFormat::Table,
                         DecimalMark decimal = DecimalMark::Automatic);
 
@@ -40,10 +40,11 @@ public:
     int line_number() const { return line_; }
     SourcePosition position(const TextToken& token) const;
     SourcePosition position(int line, int column) const { return {name_, line, column}; }
-    /// For what is wrong with the file as a whole: its last line.
+    /// Returns the place for what is wrong with the file as a whole: its last line.
     SourcePosition end_position() const { return {name_, line_ > 0 ? line_ : 1, 1}; }
     const std::string& name() const { return name_; }
-    /// What would tell whether commas in numbers are decimal marks; empty where it is clear.
+    /// Returns what would tell whether commas in numbers are decimal marks; empty where it is
+    /// clear.
     const std::string& decimal_doubt() const { return decimal_doubt_; }
 
     /// Cells of the current line, blanks and quotation marks around them removed; an empty cell is

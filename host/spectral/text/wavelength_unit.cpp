@@ -13,7 +13,7 @@ namespace reradiant {
 
 namespace {
 
-/// Where scenes look at spectra.
+/// Scenes look at spectra in this range of wavelengths.
 constexpr double seen_from_nm = 200.0, seen_to_nm = 1000.0;
 
 constexpr WavelengthUnit nanometres{"nm", 1.0};
@@ -167,7 +167,7 @@ bool is_unit_percent(std::string_view before) {
     return std::isdigit(static_cast<unsigned char>(lower.back())) == 0 && !lower.ends_with("not");
 }
 
-/// What the numbers look like in another unit than nm.
+/// Returns words on the unit that wavelengths seem to be in when they cannot be in nm.
 std::string_view guess(double from, double to) {
     if (to < 10.0)
         return "they look like micrometres";

@@ -36,8 +36,8 @@ std::string stated_other_quantity(std::string_view heading);
 /// cent". A sign behind a digit ("Grey 50%") belongs to the number.
 bool states_percent(std::string_view heading);
 
-/// Where a unit of wavelength comes from: the heading of a file, the custom that it is nm, or an
-/// interface that has no other.
+/// A `UnitSource` says where a unit of wavelength comes from: the heading of a file, the custom
+/// that it is nm, or an interface that has no other.
 enum class UnitSource { Stated, Assumed, Fixed };
 
 /// Input Error unless some of the range lies where the program looks at light, 200 to 1000 nm: what

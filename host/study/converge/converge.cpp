@@ -40,7 +40,7 @@ std::string sha256_of(const std::string& text) {
     return digest.hex();
 }
 
-/// What every image of this run depends on.
+/// Returns a text that names what every image of this run depends on.
 std::string common_identity(const Scene& scene, const Device& device,
                             const ConvergeOptions& options) {
     const WavelengthGrid bands = options.render.bands.value_or(film_bands(scene));
@@ -86,7 +86,8 @@ private:
         digest.update({reinterpret_cast<const char*>(reference.image.values.data()),
                        reference.image.values.size() * sizeof(float)});
         reference.identity = digest.hex();
-        // The same random numbers would make an image agree with its reference too well.
+        // The methods take another seed than the reference: with the same random numbers an image
+        // would agree with it too well.
         result_.seed = options_.render.seed;
         const auto seed = reference.image.attributes.find("reradiant:seed");
         if (seed != reference.image.attributes.end() &&
@@ -120,7 +121,7 @@ private:
             result_.interrupted = options_.team->from_leader(rendered.interrupted) != 0;
         if (result_.interrupted)
             return;
-        if (rendered.image.values.empty()) { // of a member: the leader has it
+        if (rendered.image.values.empty()) { // only the leader has the image
             await_leader();
             auto kept = kept_reference(options_.folder, identity);
             if (!kept)

@@ -18,7 +18,7 @@ struct ConvergeOptions {
     std::vector<RenderMethod> methods;
     std::filesystem::path reference;     ///< empty: it is rendered, with other random numbers
     std::uint32_t reference_samples = 0; ///< 0: for ten times the time of a method
-    double time_seconds = 10.0;          ///< of rendering, each method
+    double time_seconds = 10.0;          ///< that each method renders for
     RenderOptions render; ///< seed, threads, bands, memory and seconds between checkpoints are used
     bool resume = false;  ///< refuse a checkpoint that is of another render; else begin it anew
     /// Renders the reference together; methods are timed one at a time on every machine, by its
@@ -26,7 +26,7 @@ struct ConvergeOptions {
     Team* team = nullptr;
 };
 
-/// What errors are measured against.
+/// A `Reference` is the image that errors are measured against.
 struct Reference {
     SpectralImage image;
     std::filesystem::path file;
@@ -42,7 +42,7 @@ struct MethodResult {
 
 struct ConvergeResult {
     Reference reference;
-    std::uint32_t seed = 0; ///< of the methods: not the reference's
+    std::uint32_t seed = 0; ///< the methods'; the reference has another
     std::vector<MethodResult> methods;
     bool interrupted = false; ///< methods that were finished are there
 };

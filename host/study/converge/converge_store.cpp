@@ -57,7 +57,8 @@ CurveRow row_from_json(const Json& json) {
     return row;
 }
 
-/// Of seconds and samples that grow: what a file that somebody else wrote may not keep to.
+/// Reads rows whose seconds and samples grow; none when they do not, as in a file that somebody
+/// else wrote.
 std::vector<CurveRow> rows_from_json(const Json& json) {
     std::vector<CurveRow> rows;
     CurveRow last;

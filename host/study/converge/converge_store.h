@@ -17,12 +17,12 @@ RelmseEstimate estimate_from_json(const nlohmann::ordered_json& json);
 /// is what it depends on besides its name.
 void keep_method(const std::filesystem::path& folder, const std::string& identity,
                  const MethodResult& result);
-/// The same method of an earlier run; nothing when there is none, when it is of another identity,
-/// or when its files are damaged.
+/// Returns a method as an earlier run kept it; nothing when there is none, when it is of another
+/// identity, or when its files are damaged.
 std::optional<MethodResult> kept_method(const std::filesystem::path& folder,
                                         const std::string& identity, const RenderMethod& method);
 
-/// Where its image lies.
+/// Returns the file that keep_method writes a method's image to.
 std::filesystem::path method_image(const std::filesystem::path& folder, const RenderMethod& method);
 
 /// Keeps the rows of a method that is not finished as methods/NAME.rows.json; keep_method removes
@@ -34,7 +34,7 @@ std::vector<CurveRow> kept_rows(const std::filesystem::path& folder, const std::
 
 /// Keeps the reference that was rendered as reference.exr beneath `folder`.
 void keep_reference(const std::filesystem::path& folder, Reference& reference);
-/// The same reference of an earlier run, if it is there and whole.
+/// Returns the reference that an earlier run kept, if it is there, whole and of this identity.
 std::optional<Reference> kept_reference(const std::filesystem::path& folder,
                                         const std::string& identity);
 

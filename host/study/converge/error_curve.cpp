@@ -24,7 +24,8 @@ std::vector<double> seconds_of(const ErrorCurve& curve) {
     return column(curve, [](const CurveRow& row) { return row.seconds; });
 }
 
-/// What the estimate allows at most; 0 where there is no estimate.
+/// Returns the largest error that the estimate allows, its value where it has no upper end, and 0
+/// where there is no estimate.
 double upper_end(const RelmseEstimate& estimate) {
     if (!std::isfinite(estimate.high) || !(estimate.value > 0.0))
         return std::isfinite(estimate.value) ? estimate.value : 0.0;

@@ -12,7 +12,7 @@ namespace reradiant {
 
 /// The error of one method after some time of rendering.
 struct CurveRow {
-    double seconds = 0.0;            ///< of rendering: no set-up, no comparing, no writing
+    double seconds = 0.0;            ///< rendering alone: no set-up, no comparing, no writing
     double seconds_with_setup = 0.0; ///< reading tables and building kernels too
     std::uint32_t samples = 0;
     Comparison error;
@@ -22,7 +22,7 @@ struct CurveRow {
 struct ErrorCurve {
     RenderMethod method;
     double setup_seconds = 0.0; ///< tables and kernels, until light is traced
-    double build_seconds = 0.0; ///< of them, compiling or loading kernels
+    double build_seconds = 0.0; ///< part of them: compiling or loading kernels
     std::vector<CurveRow> rows; ///< at geometric steps of time, ascending
 };
 
@@ -41,8 +41,8 @@ double efficiency(const ErrorCurve& curve);
 /// nothing when it is not reached.
 std::optional<double> seconds_to_reach(const ErrorCurve& curve, double target);
 
-/// Where a method stops improving. Its error is that of its noise, which the render estimates, and
-/// of the reference's noise; what is left over is bias.
+/// A `BiasFloor` says where a method stops improving. Its error is that of its noise, which the
+/// render estimates, and of the reference's noise; what is left over is bias.
 struct BiasFloor {
     double relmse = 0.0;             ///< of the bias alone, 0 when none is seen
     double smallest_visible = 0.0;   ///< a bias beneath this would not have been seen

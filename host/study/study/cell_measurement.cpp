@@ -61,7 +61,8 @@ Xyz weighted(const Eigen::VectorXd& radiance, const std::vector<Xyz>& weights) {
     return xyz;
 }
 
-/// What a perfect diffuser would send for unit irradiance is 1/pi.
+/// Returns the radiance under a light over that of a perfect diffuser for unit irradiance, which is
+/// 1/pi.
 Eigen::VectorXd factor_times_light(const DirectionalMatrix& matrix, const Eigen::VectorXd& light) {
     return std::numbers::pi * (matrix.diffuse * light + matrix.specular.cwiseProduct(light)).eval();
 }

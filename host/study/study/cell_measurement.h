@@ -11,7 +11,8 @@
 
 namespace reradiant {
 
-/// What an eye and an instrument see at one pair of directions under one illuminant.
+/// A `SeenColour` is what an eye and an instrument see at one pair of directions under one
+/// illuminant.
 struct SeenColour {
     std::string illuminant;
     double theta_i_deg = 0.0, theta_o_deg = 0.0, phi_deg = 0.0;
@@ -36,7 +37,7 @@ struct CellMeasurement {
     WavelengthGrid bands;
     std::vector<SeenColour> colours;
     Eigen::MatrixXd matrix; ///< directional-hemispherical at the first theta_i, per-band, diffuse
-    std::vector<double> specular; ///< the same of light that never reached the substrate
+    std::vector<double> specular; ///< likewise, of light that never reached the substrate
     std::vector<PolarCurve> polar;
     std::vector<std::string> notes;
 };

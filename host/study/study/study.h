@@ -26,7 +26,7 @@ struct StudyOptions {
 /// image.png.
 struct CellResult {
     std::size_t index = 0;
-    std::vector<std::string> labels; ///< of the values, one a sweep
+    std::vector<std::string> labels; ///< of the chosen values, one for each sweep
     std::filesystem::path folder;
     std::string error; ///< empty: the cell was done
     bool kept = false; ///< from an earlier run

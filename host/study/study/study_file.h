@@ -13,7 +13,8 @@
 
 namespace reradiant {
 
-/// What a sweep changes: a key of the scene, or something that has a name in studies.
+/// A `SweepKind` says what a sweep changes: a key of the scene, or something that has a name in
+/// studies.
 enum class SweepKind { Key, Angle, Concentration, Illuminant, Matrix };
 
 struct SweepValue {
@@ -27,13 +28,13 @@ struct SweepValue {
 
 /// One parameter and the values that it takes.
 struct Sweep {
-    std::string label; ///< of axes and columns
-    std::string unit;  ///< of values that are numbers, "deg"; empty: none is known
+    std::string label; ///< name on axes and in columns
+    std::string unit;  ///< unit of values that are numbers, "deg"; empty: none is known
     SweepKind kind = SweepKind::Key;
-    /// Where in the scene's tables, part by part: keys, and of arrays an index or a `name`. Of the
-    /// illuminant: of every light, or of the one that is named.
+    /// Place in the scene's tables, part by part: keys of tables, and for arrays an index or a
+    /// `name`. For an illuminant it is that of every light, or of the one that is chosen.
     std::vector<std::string> path;
-    int index = -1; ///< illuminant: of the light; concentration: of the fluorophore; -1: all
+    int index = -1; ///< of the light (Illuminant) or fluorophore (Concentration); -1: all
     std::vector<SweepValue> values;
     SourcePosition position;
 };
@@ -41,7 +42,7 @@ struct Sweep {
 struct StudyRendering {
     std::uint32_t samples = 64;
     RenderMethod method;
-    std::optional<double> exposure_ev; ///< of all pictures; empty: chosen by what they show
+    std::optional<double> exposure_ev; ///< for all pictures; empty: chosen by what they show
 };
 
 /// A virtual goniophotometer's angles, in degrees, and the light that colours are seen under.
@@ -49,7 +50,7 @@ struct StudyMeasuring {
     std::vector<double> theta_i_deg{45.0}, theta_o_deg{0.0}, phi_deg{0.0};
     std::vector<std::string> illuminants{"D65"};
     Model model = Model::Auto;
-    long samples = 0; ///< of the walk: paths for each theta_i, 0: its default
+    long samples = 0; ///< the walk's paths for each theta_i, 0: its default
     bool theta_i_given = false, illuminants_given = false; ///< by the file, not by default
 };
 
@@ -59,7 +60,7 @@ inline constexpr std::size_t most_study_cells = 10000;
 struct Study {
     std::filesystem::path file;
     std::string title;
-    std::filesystem::path base_file; ///< of the scene or of the material
+    std::filesystem::path base_file; ///< file of the scene or of the material
     toml::table base;                ///< the scene that cells change
     bool is_sample = false;          ///< the built-in scene around a material
     std::string material;            ///< name of the scene's material that is measured

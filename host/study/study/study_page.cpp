@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// What all images together may take in the page before base64; beyond, they are reduced.
+/// Bytes that all images together may take in the page before base64; beyond, they are reduced.
 constexpr double image_bytes = 12e6;
 
 template <typename Value>

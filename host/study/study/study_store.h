@@ -17,7 +17,8 @@ void keep_cell(const CellResult& cell, const std::string& identity);
 /// when its files are damaged.
 bool restore_cell(CellResult& cell, const std::string& identity);
 
-/// What a member of a team tells the leader of a cell; its results lie in the folder.
+/// A `ToldCell` is what a member of a team tells the leader of a cell; its results lie in the
+/// folder.
 struct ToldCell {
     std::size_t index = 0;
     std::string identity, error;

@@ -90,7 +90,7 @@ void set_concentration(Substrate& substrate, int index, double concentration) {
     std::vector<double> nm, ratio;
     for (int wavelength = first_dye_nm; wavelength <= last_dye_nm; ++wavelength)
         nm.push_back(wavelength);
-    ratio.assign(nm.size(), 1.0); // of what passes now to what passed
+    ratio.assign(nm.size(), 1.0); // light that passes now over light that passed
     for (std::size_t k = 0; k < substrate.fluorophores.size(); ++k) {
         if (!is_meant(index, k))
             continue;
@@ -124,7 +124,7 @@ void set_illuminant(Light& light, const SweepValue& value) {
     }
 }
 
-/// What the tables have no words for.
+/// Applies what the tables have no words for: a concentration, and an illuminant by name.
 void apply_to_scene(Scene& scene, const std::string& material, const ChosenValue& chosen) {
     const Sweep& sweep = *chosen.sweep;
     const SweepValue& value = *chosen.value;

@@ -30,7 +30,7 @@ std::string one_line(const toml::node& node) {
     return line.size() > longest_label ? line.substr(0, longest_label) + "..." : line;
 }
 
-/// What a value is called on pages and in tables.
+/// Returns what a value is called on pages and in tables.
 std::string label_of(const toml::node& node) {
     if (const auto text = node.value<std::string>(); text && node.is_string())
         return fs::path(*text).stem().string() == *text ? *text
@@ -91,7 +91,7 @@ void add_value(Sweep& sweep, const toml::node& node, const std::string& name, co
     sweep.values.push_back(std::move(value));
 }
 
-/// What is swept cannot be fixed for measurements as well.
+/// Refuses a sweep of what [measure] fixes as well.
 void refuse_given_twice(const Study& study, const Sweep& sweep) {
     if (!study.measuring)
         return;

@@ -26,8 +26,8 @@ std::string element(int index) {
     return index < 0 ? every_element : std::to_string(index);
 }
 
-/// What numbers of a sweep are counted in. Thickness has a unit of the file's own, which its
-/// absorption is per.
+/// Returns the unit that numbers of a sweep are counted in. Thickness has a unit of the file's own,
+/// which its absorption is per.
 std::string unit_of(const Sweep& sweep) {
     static const std::map<std::string, std::string> units{
         {"angle", "deg"},

@@ -10,11 +10,11 @@
 
 namespace reradiant {
 
-/// Where something stands in tables, part by part: keys of tables, and of arrays an index or the
-/// `name` of the element.
+/// A `TomlPath` says where something stands in tables, part by part: keys of tables, and for arrays
+/// an index or the `name` of the element.
 using TomlPath = std::vector<std::string>;
 
-/// "material.sample.layer.0.thickness"
+/// Splits a path as it is written, such as "material.sample.layer.0.thickness".
 TomlPath toml_path(const std::string& dotted);
 
 /// Index of the element that a part means; nothing when there is none.
