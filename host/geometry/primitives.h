@@ -40,7 +40,7 @@ struct Box {
 /// `describe` leaves u and v at zero; `set_parameters` sets them for callers that need them.
 
 struct SpherePrimitive {
-    Vec3 center;
+    Vec3 centre;
     double radius;
 
     double intersect(const Ray& ray) const;
@@ -52,28 +52,28 @@ struct SpherePrimitive {
 
 /// Both sides; the normal is that of cross(edge_u, edge_v).
 struct RectanglePrimitive {
-    RectanglePrimitive(const Vector3& center, const Vector3& edge_u, const Vector3& edge_v);
+    RectanglePrimitive(const Vector3& centre, const Vector3& edge_u, const Vector3& edge_v);
 
     double intersect(const Ray& ray) const;
     SurfaceHit describe(const Ray& ray, double t) const;
     void set_parameters(SurfaceHit& hit) const;
     Box bounds() const;
 
-    Vec3 center, edge_u, edge_v;
+    Vec3 centre, edge_u, edge_v;
     Vec3 normal;         ///< unit
     Vec3 dual_u, dual_v; ///< dual_u . edge_u = 1, dual_u . edge_v = 0
 };
 
 /// Both sides. u = distance from the centre over the radius, v = azimuth over 2 pi.
 struct DiskPrimitive {
-    DiskPrimitive(const Vector3& center, const Vector3& normal, double radius);
+    DiskPrimitive(const Vector3& centre, const Vector3& normal, double radius);
 
     double intersect(const Ray& ray) const;
     SurfaceHit describe(const Ray& ray, double t) const;
     void set_parameters(SurfaceHit& hit) const;
     Box bounds() const;
 
-    Vec3 center, normal, tangent;
+    Vec3 centre, normal, tangent;
     double radius;
 };
 

@@ -65,7 +65,7 @@ struct LayerStack {
     bool has_films() const;
     bool has_flakes() const;
     /// True when nothing about the stack depends on wavelength.
-    bool is_grey() const;
+    bool is_constant() const;
 };
 
 struct FilmValues {

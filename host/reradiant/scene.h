@@ -41,11 +41,11 @@ struct IntegratorSettings {
 
 /// Emits radiance on the side of cross(edge_u, edge_v).
 struct RectangleLight {
-    Vector3 center{}, edge_u{}, edge_v{};
+    Vector3 centre{}, edge_u{}, edge_v{};
     Spectrum radiance;
 };
 struct SphereLight {
-    Vector3 center{};
+    Vector3 centre{};
     double radius = 1.0;
     Spectrum radiance;
 };
@@ -74,7 +74,7 @@ using Light =
 /// The emission spectrum of any light (radiance, intensity or irradiance).
 const Spectrum& light_spectrum(const Light& light);
 
-/// oren-nayar: Oren and Nayar 1994, qualitative form (the seed's), sigma in radians.
+/// oren-nayar: Oren and Nayar 1994, qualitative form, sigma in radians.
 enum class SubstrateType { Lambert, OrenNayar, Conductor };
 
 /// A `Substrate` is the bottom of a stack. It has a reflectance alone, or a matrix, or
@@ -153,14 +153,14 @@ struct Material {
 };
 
 struct SphereShape {
-    Vector3 center{};
+    Vector3 centre{};
     double radius = 1.0;
 };
 struct RectangleShape {
-    Vector3 center{}, edge_u{}, edge_v{};
+    Vector3 centre{}, edge_u{}, edge_v{};
 };
 struct DiskShape {
-    Vector3 center{}, normal{};
+    Vector3 centre{}, normal{};
     double radius = 1.0;
 };
 /// Triangles; positions xyz xyz ..., 3 indices a triangle, normals empty or one a vertex.

@@ -24,8 +24,8 @@ DEVICE_FUNCTION real lights_rectangle_pdf(real area, real distance, real cos_lig
 
 /// 1 - cos of the cone under which a sphere is seen, without cancellation for far spheres;
 /// 0 from inside.
-DEVICE_FUNCTION real lights_sphere_cone(real radius, real distance_to_center) {
-    const real s = radius / distance_to_center;
+DEVICE_FUNCTION real lights_sphere_cone(real radius, real distance_to_centre) {
+    const real s = radius / distance_to_centre;
     if (!(s < REAL(1.0)))
         return REAL(0.0);
     const real sin2 = s * s;
@@ -34,10 +34,10 @@ DEVICE_FUNCTION real lights_sphere_cone(real radius, real distance_to_center) {
 
 DEVICE_FUNCTION LightSample lights_sample_rectangle(LightRecord light, Vec3 from, real u1,
                                                     real u2) {
-    const Vec3 center = vec3(light.px, light.py, light.pz);
+    const Vec3 centre = vec3(light.px, light.py, light.pz);
     const Vec3 u = vec3_scale(vec3(light.ux, light.uy, light.uz), u1 - REAL(0.5));
     const Vec3 v = vec3_scale(vec3(light.vx, light.vy, light.vz), u2 - REAL(0.5));
-    const Vec3 to_light = vec3_sub(vec3_add(center, vec3_add(u, v)), from);
+    const Vec3 to_light = vec3_sub(vec3_add(centre, vec3_add(u, v)), from);
     LightSample s;
     s.distance = sqrt(vec3_dot(to_light, to_light));
     s.direction = vec3_scale(to_light, REAL(1.0) / fmax(s.distance, REAL(1e-30)));
@@ -50,8 +50,8 @@ DEVICE_FUNCTION LightSample lights_sample_rectangle(LightRecord light, Vec3 from
 /// Samples a direction uniformly over the cone of a sphere (Shirley, Wang and Zimmerman 1996); the
 /// distance is that to the near surface.
 DEVICE_FUNCTION LightSample lights_sample_sphere(LightRecord light, Vec3 from, real u1, real u2) {
-    const Vec3 to_center = vec3_sub(vec3(light.px, light.py, light.pz), from);
-    const real d = sqrt(vec3_dot(to_center, to_center));
+    const Vec3 to_centre = vec3_sub(vec3(light.px, light.py, light.pz), from);
+    const real d = sqrt(vec3_dot(to_centre, to_centre));
     const real cone = lights_sphere_cone(light.radius_or_area, d);
     LightSample s;
     s.direction = vec3(REAL(0.0), REAL(0.0), REAL(1.0));
@@ -64,7 +64,7 @@ DEVICE_FUNCTION LightSample lights_sample_sphere(LightRecord light, Vec3 from, r
     const real cosine = REAL(1.0) - one_minus_cos;
     const real sine = sqrt(one_minus_cos * (REAL(2.0) - one_minus_cos));
     const Vec3 around = sampling_circle(u2);
-    const Frame frame = sampling_frame(vec3_scale(to_center, REAL(1.0) / d));
+    const Frame frame = sampling_frame(vec3_scale(to_centre, REAL(1.0) / d));
     s.direction = sampling_to_world(frame, vec3(sine * around.x, sine * around.y, cosine));
     const real miss2 = d * sine * d * sine;
     s.distance = d * cosine - sqrt(fmax(REAL(0.0), square(light.radius_or_area) - miss2));
@@ -102,9 +102,9 @@ DEVICE_FUNCTION LightSample lights_sample(LightRecord light, Vec3 from, real u1,
 /// light; `cos_light` is the cosine at the light.
 DEVICE_FUNCTION real lights_pdf(LightRecord light, Vec3 from, real distance, real cos_light) {
     if (light.type == LIGHT_SPHERE) {
-        const Vec3 to_center = vec3_sub(vec3(light.px, light.py, light.pz), from);
+        const Vec3 to_centre = vec3_sub(vec3(light.px, light.py, light.pz), from);
         const real cone =
-            lights_sphere_cone(light.radius_or_area, sqrt(vec3_dot(to_center, to_center)));
+            lights_sphere_cone(light.radius_or_area, sqrt(vec3_dot(to_centre, to_centre)));
         return cone > REAL(0.0) ? REAL(1.0) / (REAL(2.0) * PI_REAL * cone) : REAL(0.0);
     }
     return lights_rectangle_pdf(light.radius_or_area, distance, cos_light);

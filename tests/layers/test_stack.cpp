@@ -34,12 +34,12 @@ TEST(Stack, BlinnExponentFollowsAlpha) {
 TEST(Stack, KnowsWhatDependsOnWavelength) {
     LayerStack stack;
     EXPECT_TRUE(stack.is_smooth());
-    EXPECT_TRUE(stack.is_grey());
+    EXPECT_TRUE(stack.is_constant());
     Layer grey;
     grey.thickness = 2.0;
     grey.absorption = Spectrum::constant(0.25);
     stack.layers.push_back(grey);
-    EXPECT_TRUE(stack.is_grey());
+    EXPECT_TRUE(stack.is_constant());
     EXPECT_TRUE(stack.absorbs());
     EXPECT_EQ(stack_at(stack, 500.0).front().tau, 0.5);
     Layer dispersive;
@@ -47,7 +47,7 @@ TEST(Stack, KnowsWhatDependsOnWavelength) {
     dispersive.alpha = 0.1;
     stack.layers.push_back(dispersive);
     EXPECT_TRUE(stack.is_dispersive());
-    EXPECT_FALSE(stack.is_grey());
+    EXPECT_FALSE(stack.is_constant());
     EXPECT_FALSE(stack.is_smooth());
     EXPECT_NEAR(stack_at(stack, 550.0).back().ior, 1.45, 1e-12);
 }

@@ -1,8 +1,8 @@
 #include "host/fit/models/factor_fit.h"
 
-#include "host/fit/models/at_once.h"
 #include "host/fit/models/hidden_bands.h"
 #include "host/fit/models/knot_choice.h"
+#include "host/fit/models/run_in_parallel.h"
 #include "host/fit/solver/solve_journal.h"
 #include "reradiant/error.h"
 
@@ -79,8 +79,8 @@ public:
             if (solver.journal != nullptr)
                 mine.journal = &solver.journal->branch();
         std::vector<FittedCandidate> fits(tasks.size());
-        run_at_once(settings_.threads, tasks.size(),
-                    [&](std::size_t k) { fits[k] = fit_from(tasks[k], solvers[k]); });
+        run_in_parallel(settings_.threads, tasks.size(),
+                        [&](std::size_t k) { fits[k] = fit_from(tasks[k], solvers[k]); });
         return fits;
     }
 

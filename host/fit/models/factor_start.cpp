@@ -1,6 +1,6 @@
 #include "host/fit/models/factor_start.h"
 
-#include "host/fit/models/at_once.h"
+#include "host/fit/models/run_in_parallel.h"
 
 #include <Eigen/SVD>
 
@@ -107,7 +107,7 @@ std::vector<FactorCurves> factor_starts(const FitTarget& target, int rank,
     for (int guess = 0; rank > 1 && guess < random_guesses; ++guess)
         list.push_back(random_start(target, rank, random));
     std::vector<double> costs(list.size());
-    run_at_once(threads, list.size(), [&](std::size_t k) {
+    run_in_parallel(threads, list.size(), [&](std::size_t k) {
         costs[k] = descend_factors(target, list[k], sweeps_of_a_start);
     });
     std::vector<std::size_t> order(list.size());

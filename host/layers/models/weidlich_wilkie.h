@@ -8,7 +8,7 @@ namespace reradiant {
 /// Model A (`weidlich-wilkie`), Weidlich and Wilkie 2007: for unit vectors in the local frame
 /// (z = normal, both above the surface), at one wavelength. Nested: each part of the stack adds its
 /// own BRDF at the directions refracted down to it, seen through the parts above by T12, a and t
-/// (Weidlich and Wilkie 2007); no n^2 factors, as in the seed. Directions refract at the
+/// (Weidlich and Wilkie 2007); no n^2 factors, as published. Directions refract at the
 /// macroscopic normal.
 ///
 /// - interface: Torrance-Sparrow, F D G / (4 ci co), or a mirror where it is smooth. The half

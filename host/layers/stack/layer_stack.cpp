@@ -48,7 +48,7 @@ bool LayerStack::has_flakes() const {
                        [](const Layer& l) { return l.flakes.has_value(); });
 }
 
-bool LayerStack::is_grey() const {
+bool LayerStack::is_constant() const {
     return std::all_of(layers.begin(), layers.end(), [](const Layer& l) {
         return l.ior.is_constant() && l.absorption.is_constant() &&
                l.scattering_coefficient.is_constant() && !l.film && !l.flakes;

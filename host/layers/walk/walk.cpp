@@ -15,11 +15,11 @@ using Kind = WalkElement::Kind;
 
 namespace {
 
-/// `Carried` holds the weights that one walk carries: those of all bands, or that of the band that
-/// the walk is in.
-class Carried {
+/// `WalkThroughput` holds the weights that one walk carries: those of all bands, or that of the
+/// band that the walk is in.
+class WalkThroughput {
 public:
-    Carried(const WalkMaterial& material, std::optional<int> band)
+    WalkThroughput(const WalkMaterial& material, std::optional<int> band)
         : material_(material), start_(band), band_(band.value_or(0)),
           rows_(Eigen::ArrayXd::Ones(band ? 1 : material.bands())) {}
 
@@ -106,7 +106,7 @@ public:
         : wo_(wo), seed_(seed), sample_(sample) {}
 
     std::size_t size() const { return wo_.size(); }
-    const std::vector<WalkConnector>& of(const Carried& carried) {
+    const std::vector<WalkConnector>& of(const WalkThroughput& carried) {
         if (made_.empty() || band_ != carried.band()) {
             made_.clear();
             band_ = carried.band();
@@ -129,7 +129,7 @@ private:
 /// One walk from the air until it ends or leaves.
 class Walk {
 public:
-    Walk(Carried carried, const Vec3& wi, WalkRandom& random, Connectors* connectors,
+    Walk(WalkThroughput carried, const Vec3& wi, WalkRandom& random, Connectors* connectors,
          WalkTally* tally)
         : carried_(std::move(carried)), random_(random), connectors_(connectors), tally_(tally),
           d_(kernels::vec3(-wi.x, -wi.y, -wi.z)) {}
@@ -147,7 +147,7 @@ public:
     bool has_left() const { return going_; }
     bool is_delta() const { return is_delta_; }
     const Vec3& direction() const { return d_; }
-    const Carried& carried() const { return carried_; }
+    const WalkThroughput& carried() const { return carried_; }
 
 private:
     const WalkElement& element() const {
@@ -281,7 +281,7 @@ private:
         --at_;
     }
 
-    Carried carried_;
+    WalkThroughput carried_;
     WalkRandom& random_;
     Connectors* connectors_;
     WalkTally* tally_;
@@ -333,7 +333,7 @@ void LayerWalk::eval(const Vec3& wi, std::span<const Vec3> wo, std::uint64_t see
     Connectors connectors(wo, seed, sample);
     const auto follow = [&](std::optional<int> band) {
         WalkRandom random(seed, sample, 0); // the same at all bands: their differences are smooth
-        Walk walk(Carried(material_, band), wi, random, &connectors, &tally);
+        Walk walk(WalkThroughput(material_, band), wi, random, &connectors, &tally);
         walk.run();
         if (walk.has_left()) {
             walk.carried().add_to(tally.hemispherical,
@@ -352,7 +352,7 @@ void LayerWalk::eval(const Vec3& wi, std::span<const Vec3> wo, std::uint64_t see
 
 WalkSample LayerWalk::sample(const Vec3& wi, int band, WalkRandom& random) const {
     check_direction(wi);
-    Walk walk(Carried(material_, band), wi, random, nullptr, nullptr);
+    Walk walk(WalkThroughput(material_, band), wi, random, nullptr, nullptr);
     walk.run();
     return {walk.direction(), walk.carried().band(),
             walk.has_left() ? walk.carried().rows()(0) : 0.0, walk.carried().reached(),

@@ -42,7 +42,7 @@ struct DescribeLight {
 
     double operator()(const RectangleLight& light) const {
         record.type = LIGHT_RECTANGLE;
-        set_position(record, light.center);
+        set_position(record, light.centre);
         record.ux = narrow(light.edge_u[0]);
         record.uy = narrow(light.edge_u[1]);
         record.uz = narrow(light.edge_u[2]);
@@ -56,7 +56,7 @@ struct DescribeLight {
     }
     double operator()(const SphereLight& light) const {
         record.type = LIGHT_SPHERE;
-        set_position(record, light.center);
+        set_position(record, light.centre);
         record.radius_or_area = narrow(light.radius);
         return 4.0 * std::numbers::pi * std::numbers::pi * light.radius * light.radius;
     }

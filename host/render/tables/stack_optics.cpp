@@ -80,7 +80,7 @@ int adding_lobe_count(const LayerStack& stack) {
 /// Returns true when something that the tables by the angle hold depends on wavelength.
 bool depends_on_wavelength(const Material& material) {
     const Conductor& metal = material.substrate.conductor;
-    return !material.stack.is_grey() ||
+    return !material.stack.is_constant() ||
            (material.substrate.type == SubstrateType::Conductor &&
             !(metal.ior.is_constant() && metal.kappa.is_constant() && !metal.film));
 }

@@ -32,7 +32,7 @@ public:
 
     double transmission(double c) const override {
         if (!all_smooth_)
-            return absorbed(values_.stack.size(), c);
+            return unabsorbed(values_.stack.size(), c);
         const kernels::Vec3 w = kernels::vec3(std::sqrt((1.0 - c) * (1.0 + c)), 0.0, c);
         return c > 0.0 ? WeidlichWilkie::way_in(values_.stack, w, w) : 0.0;
     }
@@ -44,7 +44,7 @@ public:
     }
     double residual(double c) const override { return residual_scale_ * residual_(c); }
     double amplitude(int lobe, double c) const override {
-        return absorbed(lobes_[static_cast<std::size_t>(lobe)].layer, c);
+        return unabsorbed(lobes_[static_cast<std::size_t>(lobe)].layer, c);
     }
     std::vector<double> lobe_shares(double c) const override {
         std::vector<double> shares{0.0};
@@ -86,7 +86,7 @@ private:
 
     /// Returns the share of light that the first `count` slabs and the films above them let
     /// through, one way.
-    double absorbed(std::size_t count, double cosine) const {
+    double unabsorbed(std::size_t count, double cosine) const {
         const std::vector<double> c = cosines(cosine);
         double depth = 0.0, through_films = 1.0;
         for (std::size_t k = 0; k < count; ++k) {
@@ -104,7 +104,7 @@ private:
     /// smooth.
     double reflected(const StackPart& part, double cosine) const {
         const std::vector<double> c = cosines(cosine);
-        double way = absorbed(part.slabs_above(), cosine);
+        double way = unabsorbed(part.slabs_above(), cosine);
         for (std::size_t k = 0; k < part.slabs_above(); ++k) {
             if (!(values_.stack[k].film.thickness_nm > 0.0))
                 way *= through_interface(k, c[k]);
@@ -120,7 +120,7 @@ private:
     double scattered(const DeeperLobe& lobe, double cosine) const {
         const LayerValues& slab = values_.stack[lobe.layer];
         const double tau = slab.tau + slab.tau_scattering;
-        const double way = absorbed(lobe.layer, cosine);
+        const double way = unabsorbed(lobe.layer, cosine);
         return tau > 0.0 ? -0.5 * way * way * slab.tau_scattering / tau * std::expm1(-2.0 * tau)
                          : 0.0;
     }

@@ -1,7 +1,7 @@
 #include "reradiant/render.h"
 
 #include "host/render/wavefront/adaptive.h"
-#include "host/render/wavefront/rendering.h"
+#include "host/render/wavefront/render_run.h"
 
 #include <algorithm>
 
@@ -30,7 +30,7 @@ std::uint32_t next_pass(const RenderProgress& state, const RenderOptions& option
 
 /// Returns where the samples of the next pass go, which is as large as a usual one. This does not
 /// depend on how long earlier passes took, so that a resumed render takes the same samples.
-std::vector<AdaptiveGroup> adaptive_pass(Rendering& rendering, const Scene& scene,
+std::vector<AdaptiveGroup> adaptive_pass(RenderRun& rendering, const Scene& scene,
                                          const RenderOptions& options) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(scene.film.width) *
                                  static_cast<std::uint64_t>(scene.film.height);
@@ -46,7 +46,7 @@ std::vector<AdaptiveGroup> adaptive_pass(Rendering& rendering, const Scene& scen
 }
 
 /// Renders one pass and returns the samples that the pixels have on the average.
-std::uint32_t render_pass(Rendering& rendering, const Scene& scene, const RenderOptions& options) {
+std::uint32_t render_pass(RenderRun& rendering, const Scene& scene, const RenderOptions& options) {
     const std::uint32_t done = rendering.state().samples;
     const std::uint32_t even =
         options.adaptive ? samples_before_adapting(rendering.plan()) : options.samples;
@@ -69,7 +69,7 @@ std::uint32_t render_pass(Rendering& rendering, const Scene& scene, const Render
 RenderResult render(const Scene& scene, const Device& device, const RenderOptions& options,
                     const std::function<bool(const RenderProgress&)>& progress,
                     const RenderObserver& observe) {
-    Rendering rendering(scene, device, options);
+    RenderRun rendering(scene, device, options);
     rendering.resume();
     while (!rendering.must_stop() && !rendering.interrupted()) {
         const std::uint64_t paths = rendering.wavefront().statistics().paths;

@@ -2,7 +2,7 @@
 
 #include "host/render/checkpoint/render_identity.h"
 #include "host/render/film/team_film.h"
-#include "host/render/wavefront/rendering.h"
+#include "host/render/wavefront/render_run.h"
 #include "host/render/wavefront/sample_dispenser.h"
 #include "reradiant/error.h"
 
@@ -43,7 +43,7 @@ double round_seconds(const RenderOptions& options, double seconds_so_far, bool i
 }
 
 /// Renders what the leader hands out until the round is over.
-void render_round(Rendering& rendering, const RenderOptions& options, Team& team,
+void render_round(RenderRun& rendering, const RenderOptions& options, Team& team,
                   SampleDispenser& dispenser,
                   const std::function<bool(const RenderProgress&)>& progress) {
     RenderProgress shown = rendering.state();
@@ -79,7 +79,7 @@ RenderResult render_together(const Scene& scene, const Device& device, const Ren
                           "machines that share a render cannot",
                           "leave --adaptive away, or render by one process");
     check_same_render(scene, device, options, team);
-    Rendering rendering(scene, device, options);
+    RenderRun rendering(scene, device, options);
     if (team.leads())
         rendering.resume();
     SampleDispenser dispenser(options, rendering.state(), team.size());

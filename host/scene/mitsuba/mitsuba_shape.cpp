@@ -41,9 +41,9 @@ double uniform_scale(const MitsubaObject& shape, const Matrix& matrix, int axes)
 }
 
 toml::table sphere(const MitsubaObject& shape, const Matrix& matrix) {
-    const Vector center = shape.point("center").value_or(Vector::Zero());
+    const Vector centre = shape.point("center").value_or(Vector::Zero());
     const double radius = shape.number_or("radius", 1.0);
-    const Vector moved = matrix.topLeftCorner<3, 3>() * center + column(matrix, 3);
+    const Vector moved = matrix.topLeftCorner<3, 3>() * centre + column(matrix, 3);
     toml::table made{{"type", "sphere"}, {"center", toml_vector(moved)}};
     made.insert(shape.key("radius", "radius"), radius * uniform_scale(shape, matrix, 3));
     return made;

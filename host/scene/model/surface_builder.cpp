@@ -49,11 +49,11 @@ void SurfaceBuilder::finish(const std::map<std::string, int>& names, Scene& scen
     for (std::size_t i = 0; i < readings_.size(); ++i) // grows by presets, which mix with none
         others.push_back(mixed_with(i, names, state));
     for (const MaterialReading& reading : readings_)
-        scene.materials.push_back(reading.middle);
+        scene.materials.push_back(reading.representative);
     for (std::size_t i = 0; i < readings_.size(); ++i) {
         const MaterialReading& reading = readings_[i];
         Surface surface;
-        surface.name = reading.middle.name;
+        surface.name = reading.representative.name;
         surface.first_material = static_cast<int>(i);
         if (!reading.variants.empty()) {
             surface.first_material = static_cast<int>(scene.materials.size());

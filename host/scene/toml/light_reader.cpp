@@ -11,7 +11,7 @@ namespace {
 
 Light read_rectangle_light(const TableReader& reader, LoadState& state) {
     RectangleLight light;
-    light.center = reader.vector("center");
+    light.centre = reader.vector("center");
     const auto edges = read_edges(reader);
     light.edge_u = edges[0];
     light.edge_v = edges[1];
@@ -21,7 +21,7 @@ Light read_rectangle_light(const TableReader& reader, LoadState& state) {
 
 Light read_sphere_light(const TableReader& reader, LoadState& state) {
     SphereLight light;
-    light.center = reader.vector("center");
+    light.centre = reader.vector("center");
     light.radius =
         reader.number("radius", {.low = 0.0, .high = MAX_COORDINATE, .low_is_allowed = false});
     light.radiance = read_spectrum_key(reader, "radiance", SpectrumLimits::emission(), state);

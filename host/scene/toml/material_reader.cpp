@@ -76,7 +76,7 @@ void read_variants(const TableReader& reader, MaterialReading& reading, LoadStat
     TextureScope& scope = *state.texture_scope;
     scope.forget_used();
     scope.set_levels({});
-    reading.middle = read_at_levels(reader, state);
+    reading.representative = read_at_levels(reader, state);
     reading.textures = scope.used();
     if (reading.textures.empty())
         return;
@@ -169,7 +169,7 @@ MaterialReading read_material(const toml::table& table, const std::string& file,
         const std::string preset = named.text("preset");
         reading = read_preset(preset, named.position_of_key("preset"), state);
         const std::string own_name = named.text_or("name", preset);
-        reading.middle.name = own_name;
+        reading.representative.name = own_name;
         for (Material& variant : reading.variants)
             variant.name = own_name;
         return reading;

@@ -8,7 +8,8 @@ namespace reradiant {
 /// A `MaterialReading` is the content of a [material] or [[material]] table: a material, or one per
 /// combination of texture levels, and what a Surface holds besides.
 struct MaterialReading {
-    Material middle; ///< every texture at t = 1/2; the material itself when nothing is textured
+    Material
+        representative; ///< every texture at t = 1/2; the material itself when nothing is textured
     std::vector<Material> variants; ///< the last texture runs fastest; empty when not textured
     std::vector<int> textures;      ///< into LoadState::textures, as are the other two
     int normal_texture = -1;

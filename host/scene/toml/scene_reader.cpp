@@ -80,10 +80,11 @@ std::map<std::string, int> read_materials(const TableReader& root, Scene& scene,
     SurfaceBuilder builder;
     for (const toml::table* table : root.tables("material")) {
         MaterialReading reading = read_material(*table, root.file(), MaterialPlace::Scene, state);
-        if (!indices.emplace(reading.middle.name, static_cast<int>(indices.size())).second)
-            throw_input_error(position_of(root.file(), table->find("name")->first.source()),
-                              fmt::format("two materials are called \"{}\"", reading.middle.name),
-                              "give each its own name");
+        if (!indices.emplace(reading.representative.name, static_cast<int>(indices.size())).second)
+            throw_input_error(
+                position_of(root.file(), table->find("name")->first.source()),
+                fmt::format("two materials are called \"{}\"", reading.representative.name),
+                "give each its own name");
         builder.add(std::move(reading));
     }
     builder.finish(indices, scene, state);
@@ -184,7 +185,7 @@ Material material_from_table(const toml::table& table, const std::filesystem::pa
                       file.string());
     if (!reading.mixed_with.empty())
         logging::info("{}: the mixture with \"{}\" is left out", file.string(), reading.mixed_with);
-    Material material = std::move(reading.middle);
+    Material material = std::move(reading.representative);
     const auto range = default_range_nm(material.substrate.is_fluorescent());
     state.warn_outside(range[0], range[1]);
     return material;

@@ -19,9 +19,9 @@ SphereShape read_sphere(const TableReader& reader) {
 }
 
 RectangleShape read_rectangle(const TableReader& reader) {
-    const Vector3 center = reader.vector("center");
+    const Vector3 centre = reader.vector("center");
     const auto edges = read_edges(reader);
-    return {center, edges[0], edges[1]};
+    return {centre, edges[0], edges[1]};
 }
 
 DiskShape read_disk(const TableReader& reader) {

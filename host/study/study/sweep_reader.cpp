@@ -87,7 +87,7 @@ void add_value(Sweep& sweep, const toml::node& node, const std::string& name, co
         if (one_line(other.node()) == one_line(value.node()) || other.label == value.label)
             throw_input_error(value.position,
                               fmt::format("the sweep has the value {} twice", value.label),
-                              "leave one away, or tell them apart by names = [...]");
+                              "leave one out, or tell them apart by names = [...]");
     sweep.values.push_back(std::move(value));
 }
 
@@ -102,7 +102,7 @@ void refuse_given_twice(const Study& study, const Sweep& sweep) {
         if (sweep.kind == kind && is_given)
             throw_input_error(sweep.position,
                               fmt::format("{} is swept, and fixed by [measure]", sweep.label),
-                              "leave one away");
+                              "leave one out");
 }
 
 /// A value may be wrong for itself: then its cells fail. When none is right the sweep is.
@@ -169,7 +169,7 @@ void check_sweeps(const Study& study) {
                     sweep.position,
                     fmt::format("two sweeps contradict each other: {} and {} change the same thing",
                                 study.sweeps[j].label, sweep.label),
-                    "leave one away");
+                    "leave one out");
         refuse_given_twice(study, sweep);
         check_usable(study, sweep);
     }

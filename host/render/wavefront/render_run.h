@@ -14,10 +14,10 @@
 namespace reradiant {
 
 /// A render that was set up: what it has, and the steps that its passes are made of.
-class Rendering {
+class RenderRun {
 public:
     /// Refuses what render() refuses.
-    Rendering(const Scene& scene, const Device& device, const RenderOptions& options);
+    RenderRun(const Scene& scene, const Device& device, const RenderOptions& options);
 
     /// Goes on from the checkpoint where there is one and it is asked for. Time begins to count.
     void resume();

@@ -1,4 +1,4 @@
-#include "host/fit/models/at_once.h"
+#include "host/fit/models/run_in_parallel.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -7,7 +7,7 @@
 
 namespace reradiant {
 
-void run_at_once(int threads, std::size_t count, const std::function<void(std::size_t)>& work) {
+void run_in_parallel(int threads, std::size_t count, const std::function<void(std::size_t)>& work) {
     // TBB complains of arenas that are larger than the machine.
     const int most = tbb::this_task_arena::max_concurrency();
     tbb::task_arena arena(threads > 0 ? std::min(threads, most) : most);

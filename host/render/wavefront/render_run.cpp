@@ -1,4 +1,4 @@
-#include "host/render/wavefront/rendering.h"
+#include "host/render/wavefront/render_run.h"
 
 #include "host/device/opencl_device.h"
 #include "host/render/film/error_estimate.h"
@@ -102,7 +102,7 @@ void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables
 
 } // namespace
 
-Rendering::Rendering(const Scene& scene, const Device& device, const RenderOptions& options)
+RenderRun::RenderRun(const Scene& scene, const Device& device, const RenderOptions& options)
     : scene_(scene), options_(options), result_(planned(scene, device, options)),
       tables_(prepare_tables(scene, result_.plan, options)),
       geometry_(scene, tables_.features.textures || tables_.features.reflectance_image),
@@ -113,22 +113,22 @@ Rendering::Rendering(const Scene& scene, const Device& device, const RenderOptio
     rendering_ = Clock::now();
 }
 
-void Rendering::resume() {
+void RenderRun::resume() {
     state_ = checkpoint_.resume(wavefront_, result_);
     seconds_before_ = state_.seconds;
     rendering_ = Clock::now();
 }
 
-bool Rendering::must_stop() const {
+bool RenderRun::must_stop() const {
     return state_.samples >= options_.samples || state_.seconds >= options_.time_seconds ||
            (options_.relmse > 0.0 && state_.relmse <= options_.relmse);
 }
 
-double Rendering::seconds() const {
+double RenderRun::seconds() const {
     return seconds_before_ + seconds_since(rendering_) - observing_seconds_;
 }
 
-void Rendering::estimate_error() {
+void RenderRun::estimate_error() {
     wavefront_.film().read([&](FilmSums film) {
         const RelmseEstimate estimate = estimated_relmse(film, layout_, result_.plan.film.count,
                                                          options_.adaptive ? &errors_ : nullptr);
@@ -138,13 +138,13 @@ void Rendering::estimate_error() {
     });
 }
 
-std::span<const float> Rendering::pixel_errors() {
+std::span<const float> RenderRun::pixel_errors() {
     if (errors_.empty()) // as they are when a render was resumed
         estimate_error();
     return errors_;
 }
 
-SpectralImage Rendering::image_so_far() const {
+SpectralImage RenderRun::image_so_far() const {
     FilmResolver resolver = film_resolver(layout_, scene_, result_.plan);
     wavefront_.film().read([&](FilmSums film) {
         for (const FilmStrip& strip : film)
@@ -153,7 +153,7 @@ SpectralImage Rendering::image_so_far() const {
     return resolver.take();
 }
 
-void Rendering::after_pass(std::uint32_t samples, const RenderObserver& observe,
+void RenderRun::after_pass(std::uint32_t samples, const RenderObserver& observe,
                            const std::function<bool(const RenderProgress&)>& goes_on) {
     state_.samples = samples;
     state_.seconds = seconds();
@@ -168,7 +168,7 @@ void Rendering::after_pass(std::uint32_t samples, const RenderObserver& observe,
     checkpoint_.after_pass(wavefront_, result_);
 }
 
-RenderResult Rendering::finish() {
+RenderResult RenderRun::finish() {
     result_.samples = state_.samples;
     result_.relmse = state_.relmse;
     collect(result_, wavefront_, tables_);
@@ -176,7 +176,7 @@ RenderResult Rendering::finish() {
     return std::move(result_);
 }
 
-RenderResult Rendering::finish_with_image() {
+RenderResult RenderRun::finish_with_image() {
     finish_film(result_, wavefront_, film_resolver(layout_, scene_, result_.plan));
     return finish();
 }
