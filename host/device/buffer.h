@@ -72,8 +72,8 @@ public:
     std::size_t bytes() const { return count_ * sizeof(T); }
 
     void fill_zero() const {
-        device_->queue().enqueueFillBuffer(buffer(), 0, 0,
-                                           std::max<std::size_t>(count_, 1) * sizeof(T));
+        device_->opencl().queue.enqueueFillBuffer(buffer(), 0, 0,
+                                                  std::max<std::size_t>(count_, 1) * sizeof(T));
     }
 
     /// Host view of [first, first + count) until destroyed. Waits for what was queued before.
@@ -81,7 +81,7 @@ public:
     public:
         Mapping(const DeviceArray& array, std::size_t first, std::size_t count, cl_map_flags flags)
             : array_(array), count_(count) {
-            const cl::CommandQueue& queue = array.device_->queue();
+            const cl::CommandQueue& queue = array.device_->opencl().queue;
             if (is_shared()) {
                 queue.finish();
                 data_ = static_cast<T*>(array.storage_->shared()) + first;
@@ -92,8 +92,8 @@ public:
         }
         ~Mapping() {
             if (!is_shared() && data_ != nullptr)
-                clEnqueueUnmapMemObject(array_.device_->queue()(), array_.buffer()(), data_, 0,
-                                        nullptr, nullptr);
+                clEnqueueUnmapMemObject(array_.device_->opencl().queue(), array_.buffer()(), data_,
+                                        0, nullptr, nullptr);
         }
         Mapping(const Mapping&) = delete;
         Mapping& operator=(const Mapping&) = delete;

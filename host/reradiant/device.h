@@ -1,7 +1,5 @@
 #pragma once
 
-#include "host/device/opencl_device.h"
-
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -33,12 +31,13 @@ std::vector<DeviceInfo> list_devices();
 /// A device with one in-order queue that takes the time of what it runs.
 class Device {
 public:
-    /// By index or by a part of its name (case-insensitive); empty: the first. Run-time Error
-    /// that lists the devices when there is none, or none that fits. Without `may_share_memory`
-    /// arrays are mapped also where that is not needed.
+    /// Opens a device by its index or by a part of its name (case-insensitive), or the first one
+    /// when that is empty. Throws a run-time Error that lists the devices when there is none, or
+    /// none that fits. Without `may_share_memory` arrays are mapped also where that is not needed.
     explicit Device(const std::string& name_or_index, bool may_share_memory = true);
 
     const DeviceInfo& info() const { return info_; }
+    /// The OpenCL objects, for code that queues work.
     OpenClDevice& opencl() const { return *opencl_; }
 
 private:
@@ -49,7 +48,7 @@ private:
 /// Names and values that specialise a program, passed as #define.
 using KernelDefines = std::vector<std::pair<std::string, long>>;
 
-/// What building the programs of a scene took.
+/// `BuildStatistics` says what it took to build the programs of a scene.
 struct BuildStatistics {
     int built = 0, from_cache = 0;
     double seconds = 0.0;

@@ -23,28 +23,28 @@ enum class FitModel { Factors, Gaussians, Matrix };
 FitModel fit_model_from_name(const std::string& name);
 const char* fit_model_name(FitModel model);
 
-/// What a residual of s standard errors costs: s^2 / 2, or less for outliers.
+/// A `RobustLoss` says what a residual of s standard errors costs: s^2 / 2, or less for outliers.
 enum class RobustLoss { None, Huber, Cauchy };
 
 /// `none`, `huber` or `cauchy`; input Error otherwise.
 RobustLoss robust_loss_from_name(const std::string& name);
 
-/// What is not known about the stack above a sample.
+/// `UnknownLayers` says what is not known about the stack above a sample.
 struct UnknownLayers {
-    bool thickness = false;  ///< of every layer that absorbs, one factor each
-    bool absorption = false; ///< the scale of every layer's absorption, one factor each
-    bool ior = false;        ///< of every layer, one addend each
+    bool thickness = false;  ///< one factor for each layer that absorbs
+    bool absorption = false; ///< one factor for each layer's absorption
+    bool ior = false;        ///< one addend for each layer
 
     bool any() const { return thickness || absorption || ior; }
 };
 /// A list like `thickness,ior`; input Error for another name.
 UnknownLayers unknown_layers_from_names(const std::vector<std::string>& names);
 
-/// What the data say about the unknown numbers of a stack.
+/// A `StackEstimate` holds what the data say about the unknown numbers of a stack.
 struct StackEstimate {
     std::vector<std::string> names; ///< "thickness of layer 1", ...
     Eigen::VectorXd value, sigma;   ///< sigma infinite: the data do not determine it
-    Eigen::MatrixXd correlation;    ///< of the numbers; NaN where undetermined
+    Eigen::MatrixXd correlation;    ///< between the numbers; NaN where undetermined
     int rank = 0;                   ///< numbers that the data tell apart
     double reduced_chi_squared = 0.0;
     /// One sentence a group of numbers that the data cannot tell apart; empty when all are.
@@ -59,7 +59,7 @@ struct SolverSettings {
     SolveJournal* journal = nullptr; ///< keeps every step, and has those of an earlier run
 };
 
-/// How a minimisation went.
+/// A `SolveTrace` says how a minimisation went.
 struct SolveTrace {
     std::vector<double> cost, seconds; ///< after every step; seconds since `start`
     int iterations = 0;
@@ -67,7 +67,7 @@ struct SolveTrace {
     bool converged = false;
     std::string stop_reason;
 
-    /// Steps that went on from the end of these.
+    /// Appends steps that went on from the end of these.
     void append(const SolveTrace& more);
     double final_cost() const { return cost.empty() ? 0.0 : cost.back(); }
 };

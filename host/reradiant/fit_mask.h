@@ -59,7 +59,7 @@ struct MaskRules {
 /// Error for anything else, for an order that is named twice and for ranges that are empty.
 MaskRules mask_rules_from_text(const std::string& text);
 
-/// The same form; reading it gives the same rules.
+/// Returns rules in the form that mask_rules_from_text reads; reading it gives the same rules.
 std::string mask_rules_text(const MaskRules& rules);
 
 /// Entries of measured data that a fit takes as missing, and why.

@@ -7,7 +7,7 @@
 
 namespace reradiant {
 
-/// What parts the whole from the fraction in a table's numbers.
+/// A `DecimalMark` is the sign that parts the whole from the fraction in a table's numbers.
 enum class DecimalMark { Automatic, Comma, Point };
 
 /// A `TableForm` is what the reader of a plain table of numbers is told, since the table does not

@@ -1,5 +1,5 @@
 #include "reradiant/error.h"
-#include "reradiant/scene.h"
+#include "reradiant/scene_file.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
 

@@ -1,5 +1,6 @@
 #include "host/fit/data/fit_mask.h"
 
+#include "host/spectral/evidence/scatter_detection.h"
 #include "reradiant/error.h"
 
 #include <fmt/core.h>

@@ -3,6 +3,7 @@
 #include "host/base/atomic_file.h"
 #include "host/report/html.h"
 #include "host/report/svg.h"
+#include "host/spectral/evidence/scatter_line.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -23,8 +23,8 @@ namespace reradiant {
 ///   (4 ci co) with complex Fresnel, or a mirror.
 ///
 /// All this is single scattering between facets. What `multiple` adds is the residual of
-/// host/layers/models/weidlich_wilkie_residual.h, to the reflection alone: T12, a and t stay the
-/// seed's.
+/// host/layers/models/weidlich_wilkie_residual.h, to the reflection alone: T12, a and t stay as
+/// published.
 struct WeidlichWilkie {
     /// Lobes of rough interfaces and flakes and the light that slabs scatter once, 1/sr, no cosine.
     static double specular(const StackValues& stack, const kernels::Vec3& wi,

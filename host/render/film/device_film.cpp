@@ -66,7 +66,7 @@ void DeviceFilm::take(const std::function<void(const FilmStrip&)>& use) {
                     strip.statistics.map(CL_MAP_READ, 0, strip.statistics.size());
                 use({strip.first_pixel, sums.span(), statistics.span()});
             }
-            device_->queue().finish(); // or the mapping would keep the memory
+            device_->opencl().queue.finish(); // or the mapping would keep the memory
             strip.sums = {};
             strip.statistics = {};
         }
