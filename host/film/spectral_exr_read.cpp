@@ -1,4 +1,3 @@
-#include "host/device/opencl_device.h"
 #include "host/exr/exr_input.h"
 #include "host/exr/exr_window.h"
 #include "host/film/exr_layout.h"

@@ -3,8 +3,8 @@
 #include "host/device/buffer.h"
 #include "host/device/program.h"
 #include "host/render/tables/scene_tables.h"
-#include "tests/full_run.h"
 #include "tests/render/random_materials.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -134,7 +134,7 @@ void expect_sound(const SceneTables& tables, RandomMaterials& random) {
 
 /// A million materials in a full run.
 TEST(RandomMaterials, SampleAndPdfOnTheDeviceStaySound) {
-    const int batches = is_full_run() ? 250 : 2, materials = is_full_run() ? 4000 : 150;
+    const int batches = test::is_full_run() ? 250 : 2, materials = test::is_full_run() ? 4000 : 150;
     tbb::parallel_for(0, batches, [&](int batch) {
         RandomMaterials random(static_cast<unsigned>(31 + batch), 1);
         const Model model = batch % 2 == 0 ? Model::WeidlichWilkie : Model::Auto;
