@@ -1,10 +1,11 @@
+#include "host/measure/surface_model.h"
+
 #include "host/layers/models/weidlich_wilkie.h"
 #include "host/layers/models/weidlich_wilkie_residual.h"
 #include "host/layers/stack/quadrature.h"
 #include "host/layers/stack/stack_check.h"
 #include "host/measure/lobe_quadrature.h"
 #include "host/measure/surface_angles.h"
-#include "host/measure/surface_model.h"
 
 #include <algorithm>
 #include <cmath>
