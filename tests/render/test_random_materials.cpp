@@ -1,6 +1,7 @@
 // layer_stack's sample, pdf and values on the device, over tables of random materials: nothing but
 // finite numbers, none negative, no direction that its own pdf calls impossible.
 #include "host/device/buffer.h"
+#include "host/device/opencl_device.h"
 #include "host/device/program.h"
 #include "host/render/tables/scene_tables.h"
 #include "tests/render/random_materials.h"
@@ -25,7 +26,6 @@ constexpr std::size_t directions = 64, inputs = 9, outputs = 6;
 /// z (0 for the mirror), its pdf, its length, 1 for the mirror.
 constexpr const char* source = R"(
 #include "kernels/stack/layer_stack.h"
-#include "host/device/opencl_device.h"
 __kernel void triple(__global const float* in, __global float* out, uint count,
                      __global const MaterialRecord* materials, __global const LayerRecord* layers,
                      __global const LobeRecord* lobes, __global const float* tables,
