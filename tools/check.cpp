@@ -1,6 +1,5 @@
 #include "host/check/check.h"
 #include "host/report/json_file.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
 
@@ -106,15 +105,15 @@ void add_check_command(CLI::App& program, CommandContext& context) {
         "check", "Runs every device function on the device against double precision, over hard "
                  "and random inputs: errors, budgets of the OpenCL specification, speed; exit 3 "
                  "when one fails");
-    add_option(*command, "--samples", options->check.samples, "random inputs a function")
+    command->add_option("--samples", options->check.samples, "random inputs a function")
         ->check(CLI::Range(std::size_t{1000}, std::size_t{1} << 32U))
         ->capture_default_str();
-    add_option(*command, "--only", options->check.only, "functions with this in their name");
-    add_flag(*command, "--double", options->check.in_double,
-             "build the functions in double too: what single precision costs and saves");
-    add_option(*command, "--save", options->save, "write the results, for --against");
-    add_option(*command, "--against", options->against,
-               "fail too when a result moved by more than its budget since --save");
+    command->add_option("--only", options->check.only, "functions with this in their name");
+    command->add_flag("--double", options->check.in_double,
+                      "build the functions in double too: what single precision costs and saves");
+    command->add_option("--save", options->save, "write the results, for --against");
+    command->add_option("--against", options->against,
+                        "fail too when a result moved by more than its budget since --save");
     command->footer("budget: largest error over what OpenCL allows there; open: share that a "
                     "comparison decides.\n"
                     "Examples:\n"

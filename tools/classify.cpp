@@ -4,7 +4,6 @@
 #include "host/scene/toml/load_state.h"
 #include "reradiant/error.h"
 #include "reradiant/paths.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/material_tree.h"
 #include "tools/outputs.h"
@@ -159,13 +158,14 @@ void add_classify_command(CLI::App& program, CommandContext& context) {
         "classify", "Finds the class, presets and starting parameters of a material by its looks");
     for (std::size_t i = 0; i < QUESTION_COUNT; ++i) {
         const QuestionText& text = question_texts().at(i);
-        add_option(*command, fmt::format("--{}", text.option), options->answers.at(i),
-                   fmt::format("{} yes or no; asked at a terminal when left out", text.sentence));
+        command->add_option(
+            fmt::format("--{}", text.option), options->answers.at(i),
+            fmt::format("{} yes or no; asked at a terminal when left out", text.sentence));
     }
-    add_option(*command, "--class", options->letter, "leave out the questions: a class a to h")
+    command->add_option("--class", options->letter, "leave out the questions: a class a to h")
         ->check(CLI::IsMember({"a", "b", "c", "d", "e", "f", "g", "h"}));
-    add_option(*command, "-o,--output", options->output,
-               "write the starting parameters as MATERIAL.toml");
+    command->add_option("-o,--output", options->output,
+                        "write the starting parameters as MATERIAL.toml");
     command->footer(TREE);
     command->callback(
         [options, &context] { context.exit_code = run_classify(*options, context.common); });

@@ -6,7 +6,6 @@
 #include "host/spectral/evidence/matrix_warnings.h"
 #include "reradiant/error.h"
 #include "reradiant/reradiation_file.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
 
@@ -225,27 +224,28 @@ void add_colour_command(CLI::App& program, CommandContext& context) {
     auto options = std::make_shared<ColourOptions>();
     CLI::App* const command = program.add_subcommand(
         "colour", "Colour of a re-radiation matrix: XYZ, xy, Lab, whiteness, radiance factors");
-    add_option(*command, "MATRIX", options->matrix, "re-radiation matrix (.csv, .bfc, .exr)")
+    command->add_option("MATRIX", options->matrix, "re-radiation matrix (.csv, .bfc, .exr)")
         ->required();
-    add_option(*command, "--illuminant", options->illuminants,
-               "CIE illuminants: D65,A,FL2,LED-B3; an unknown name lists them all")
+    command
+        ->add_option("--illuminant", options->illuminants,
+                     "CIE illuminants: D65,A,FL2,LED-B3; an unknown name lists them all")
         ->capture_default_str();
-    CLI::Option* const e308 = add_flag(
-        *command, "--e308", options->e308,
+    CLI::Option* const e308 = command->add_flag(
+        "--e308", options->e308,
         "sums over 1 nm between the bands (ASTM E308, E2022), for every lamp; by default they are "
         "plain sums at the bands (ASTM E2152) unless these misjudge the lamp itself by over 0.2 %");
-    add_flag(*command, "--plain-sums", options->plain, "plain sums at the bands, for every lamp")
+    command->add_flag("--plain-sums", options->plain, "plain sums at the bands, for every lamp")
         ->excludes(e308);
-    add_option(*command, "--against", options->against,
-               "CIEDE2000 to the colour of this matrix, under each illuminant");
-    add_option(*command, "--polygons", options->polygons,
-               "CSV of chromaticity regions and luminance factors to test against, for "
-               "instance spectra/polygons/en-iso-20471.csv; exit with 3 when none passes");
-    add_flag(*command, "--table", options->table,
-             "print the radiance factors at every wavelength, too: total, reflected, "
-             "luminescent (the JSON has them anyway)");
-    add_option(*command, "--plot", options->plot,
-               "write the radiance factors as an SVG plot, with --against of both");
+    command->add_option("--against", options->against,
+                        "CIEDE2000 to the colour of this matrix, under each illuminant");
+    command->add_option("--polygons", options->polygons,
+                        "CSV of chromaticity regions and luminance factors to test against, for "
+                        "instance spectra/polygons/en-iso-20471.csv; exit with 3 when none passes");
+    command->add_flag("--table", options->table,
+                      "print the radiance factors at every wavelength, too: total, reflected, "
+                      "luminescent (the JSON has them anyway)");
+    command->add_option("--plot", options->plot,
+                        "write the radiance factors as an SVG plot, with --against of both");
     command->footer("Examples:\n"
                     "  reradiant colour paint.bfc --illuminant D65,A --json colour.json\n"
                     "  reradiant colour vest.csv --polygons spectra/polygons/en-iso-20471.csv\n"

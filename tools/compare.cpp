@@ -2,7 +2,6 @@
 #include "host/report/json_file.h"
 #include "reradiant/error.h"
 #include "reradiant/spectral_image.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/number_options.h"
 #include "tools/outputs.h"
@@ -67,13 +66,14 @@ void add_compare_command(CLI::App& program, CommandContext& context) {
     CLI::App* const command =
         program.add_subcommand("compare", "Compares a spectral image with a reference: relMSE, "
                                           "RMSE, bias with its standard error, CIEDE2000");
-    add_option(*command, "IMAGE", options->image, "spectral EXR")->required();
-    add_option(*command, "REFERENCE", options->reference, "spectral EXR of the same size and bands")
+    command->add_option("IMAGE", options->image, "spectral EXR")->required();
+    command->add_option("REFERENCE", options->reference, "spectral EXR of the same size and bands")
         ->required();
-    add_option(*command, "--max-relmse", options->max_relmse, "exit with 3 when relMSE is higher")
+    command->add_option("--max-relmse", options->max_relmse, "exit with 3 when relMSE is higher")
         ->check(non_negative_number());
-    add_option(*command, "--memory-limit", options->memory_limit_bytes,
-               "refuse images that would take more bytes (default: 80 % of the machine's)");
+    command->add_option(
+        "--memory-limit", options->memory_limit_bytes,
+        "refuse images that would take more bytes (default: 80 % of the machine's)");
     command->footer("Example: reradiant compare out.exr reference.exr --max-relmse 0.01");
     command->callback(
         [options, &context] { context.exit_code = run_compare(*options, context.common); });

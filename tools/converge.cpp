@@ -6,7 +6,6 @@
 #include "host/study/converge/converge_store.h"
 #include "reradiant/error.h"
 #include "reradiant/scene_file.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
@@ -119,31 +118,33 @@ void add_converge_command(CLI::App& program, CommandContext& context) {
     auto command = std::make_shared<ConvergeCommand>();
     CLI::App* const app = program.add_subcommand(
         "converge", "Measures error against run time: CSV, JSON, plots and a page");
-    add_option(*app, "SCENE", command->scene, "scene file (TOML)")->required();
-    add_option(*app, "-o,--output", command->options.folder, "folder to write to")->required();
-    add_option(*app, "--methods", command->methods,
-               "separated by commas: a model of `render`, comb:N or hero:N (its --wavelengths), "
-               "adaptive, or several in one as adding+comb:16+adaptive")
+    app->add_option("SCENE", command->scene, "scene file (TOML)")->required();
+    app->add_option("-o,--output", command->options.folder, "folder to write to")->required();
+    app->add_option(
+           "--methods", command->methods,
+           "separated by commas: a model of `render`, comb:N or hero:N (its --wavelengths), "
+           "adaptive, or several in one as adding+comb:16+adaptive")
         ->capture_default_str();
-    add_option(*app, "--reference", command->options.reference,
-               "spectral EXR to compare with; default: one is rendered");
-    add_option(*app, "--spp-reference", command->options.reference_samples,
-               "samples a pixel of the reference that is rendered; default: as many as ten "
-               "times --time allow")
+    app->add_option("--reference", command->options.reference,
+                    "spectral EXR to compare with; default: one is rendered");
+    app->add_option("--spp-reference", command->options.reference_samples,
+                    "samples a pixel of the reference that is rendered; default: as many as ten "
+                    "times --time allow")
         ->check(CLI::Range(1u, 1u << 30));
-    add_option(*app, "--time", command->options.time_seconds, "seconds of rendering, each method")
+    app->add_option("--time", command->options.time_seconds, "seconds of rendering, each method")
         ->check(positive_number())
         ->capture_default_str();
-    add_option(*app, "--bands", command->bands, "film bands in nm, FROM:TO:STEP");
-    add_option(*app, "--memory-limit", command->options.render.memory_limit_bytes,
-               "refuse a render that would take more bytes (default: 80 % of the machine's)");
-    add_option(*app, "--checkpoint", command->options.render.checkpoint_seconds,
-               "keep the render in progress every so many seconds")
+    app->add_option("--bands", command->bands, "film bands in nm, FROM:TO:STEP");
+    app->add_option("--memory-limit", command->options.render.memory_limit_bytes,
+                    "refuse a render that would take more bytes (default: 80 % of the machine's)");
+    app->add_option("--checkpoint", command->options.render.checkpoint_seconds,
+                    "keep the render in progress every so many seconds")
         ->check(positive_number())
         ->capture_default_str();
-    add_flag(*app, "--resume", command->options.resume,
-             "refuse what was kept of another scene, build or device; without it such a render "
-             "begins anew");
+    app->add_flag(
+        "--resume", command->options.resume,
+        "refuse what was kept of another scene, build or device; without it such a render "
+        "begins anew");
     app->footer("Example: reradiant converge scene.toml -o errors --methods adding,adding+comb:16 "
                 "--time 20");
     app->callback([command, &context] { context.exit_code = run_converge(*command, context); });

@@ -14,7 +14,6 @@
 #include "reradiant/reradiation_file.h"
 #include "reradiant/scene_file.h"
 #include "reradiant/spectrum_file.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/file_kind.h"
 #include "tools/outputs.h"
@@ -194,36 +193,43 @@ void add_table_options(CLI::App& command, ConvertOptions& options) {
     const auto choice = [](std::vector<std::string> words) {
         return CLI::IsMember(std::move(words));
     };
-    add_option(command, "--rows", options.words.rows,
-               "what a row of IN belongs to: emission (excitation goes across) or excitation")
+    command
+        .add_option("--rows", options.words.rows,
+                    "what a row of IN belongs to: emission (excitation goes across) or excitation")
         ->check(choice({"emission", "excitation", "rows-emission", "rows-excitation"}))
         ->group(group);
-    add_option(command, "--quantity", options.words.quantity,
-               "values of IN: per-band (their sum over the bands of excitation counts) or "
-               "density (per nm of excitation)")
+    command
+        .add_option("--quantity", options.words.quantity,
+                    "values of IN: per-band (their sum over the bands of excitation counts) or "
+                    "density (per nm of excitation)")
         ->check(choice({"per-band", "density", "density-per-nm"}))
         ->group(group);
-    add_option(command, "--scale", options.words.scale,
-               "percent, permille or the factor that makes a white reflect 1")
+    command
+        .add_option("--scale", options.words.scale,
+                    "percent, permille or the factor that makes a white reflect 1")
         ->group(group);
-    add_option(command, "--decimal", options.words.decimal,
-               "comma or point; told by itself where cells are parted by semicolons or tabs")
+    command
+        .add_option("--decimal", options.words.decimal,
+                    "comma or point; told by itself where cells are parted by semicolons or tabs")
         ->check(choice({"comma", "point"}))
         ->group(group);
-    add_option(command, "--kind", options.words.kind,
-               "measured (holds noise, may have gaps) or model (the default)")
+    command
+        .add_option("--kind", options.words.kind,
+                    "measured (holds noise, may have gaps) or model (the default)")
         ->check(choice({"measured", "model"}))
         ->group(group);
-    add_flag(command, "--anti-stokes", options.words.anti_stokes,
-             "emission below its excitation is real, not noise")
+    command
+        .add_flag("--anti-stokes", options.words.anti_stokes,
+                  "emission below its excitation is real, not noise")
         ->group(group);
-    add_option(command, "--geometry", options.words.geometry,
-               "illumination/viewing of the instrument, as in 45/0 (`fit --stack` needs it)")
+    command
+        .add_option("--geometry", options.words.geometry,
+                    "illumination/viewing of the instrument, as in 45/0 (`fit --stack` needs it)")
         ->group(group);
-    add_option(command, "--out-rows", options.out_rows, "of a matrix written as CSV: emission")
+    command.add_option("--out-rows", options.out_rows, "of a matrix written as CSV: emission")
         ->check(choice({"emission", "excitation", "rows-emission", "rows-excitation"}));
-    add_option(command, "--out-quantity", options.out_quantity,
-               "of a matrix written as CSV: per-band")
+    command
+        .add_option("--out-quantity", options.out_quantity, "of a matrix written as CSV: per-band")
         ->check(choice({"per-band", "density", "density-per-nm"}));
 }
 
@@ -234,11 +240,12 @@ void add_convert_command(CLI::App& program, CommandContext& context) {
     CLI::App* const command =
         program.add_subcommand("convert", "converts matrices (BFC, CSV, EXR), spectra (SPD, CSV, "
                                           "JCAMP-DX, CGATS, SPDX) and scenes of Mitsuba 3");
-    add_option(*command, "IN", options->in,
-               "matrix (.bfc, .csv, .exr), spectrum (.spd, .csv, JCAMP-DX, CGATS, .spdx) or "
-               "Mitsuba scene (.xml)")
+    command
+        ->add_option("IN", options->in,
+                     "matrix (.bfc, .csv, .exr), spectrum (.spd, .csv, JCAMP-DX, CGATS, .spdx) or "
+                     "Mitsuba scene (.xml)")
         ->required();
-    add_option(*command, "OUT", options->out, "file to write; its ending says the format")
+    command->add_option("OUT", options->out, "file to write; its ending says the format")
         ->required();
     add_table_options(*command, *options);
     command->footer("Examples:\n"

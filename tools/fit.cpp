@@ -12,7 +12,6 @@
 #include "reradiant/fit.h"
 #include "reradiant/reradiation_file.h"
 #include "reradiant/scene_file.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
@@ -212,59 +211,66 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
     auto options = std::make_shared<FitOptions>();
     CLI::App* const command = program.add_subcommand(
         "fit", "Fits a re-radiation matrix to bispectral data, bare or through a layer");
-    add_option(*command, "DATA", options->data, "re-radiation CSV, CSV of `measure`, .BFC or .exr")
+    command->add_option("DATA", options->data, "re-radiation CSV, CSV of `measure`, .BFC or .exr")
         ->required();
-    add_option(*command, "-o,--output", options->output, "re-radiation matrix to write")
-        ->required();
-    add_option(*command, "--model", options->model, "factors, gaussians or matrix")
+    command->add_option("-o,--output", options->output, "re-radiation matrix to write")->required();
+    command->add_option("--model", options->model, "factors, gaussians or matrix")
         ->capture_default_str();
-    add_option(*command, "--rank", options->rank,
-               "terms (dyes, roughly): 1 to 4 factors or 1 to 24 gaussians; default: as many as "
-               "the data show");
+    command->add_option(
+        "--rank", options->rank,
+        "terms (dyes, roughly): 1 to 4 factors or 1 to 24 gaussians; default: as many as "
+        "the data show");
     CLI::Option* const smooth =
-        add_option(*command, "--smooth-nm", options->smooth_nm,
-                   "spacing of the spline functions of factors, 0: one number a band");
-    add_option(*command, "--bytes", options->bytes,
-               "most bytes that the fitted factors may take: values at the bands that matter "
-               "most, straight lines between")
+        command->add_option("--smooth-nm", options->smooth_nm,
+                            "spacing of the spline functions of factors, 0: one number a band");
+    command
+        ->add_option("--bytes", options->bytes,
+                     "most bytes that the fitted factors may take: values at the bands that matter "
+                     "most, straight lines between")
         ->excludes(smooth);
-    add_option(*command, "--spill-nm", options->spill_nm,
-               "entries this near to the diagonal are not fitted; default: one band")
+    command
+        ->add_option("--spill-nm", options->spill_nm,
+                     "entries this near to the diagonal are not fitted; default: one band")
         ->check(non_negative_number());
-    add_option(*command, "--mask", options->mask,
-               "entries that count as not measured: auto (scatter of the monochromators that "
-               "stands out), none, or a list such as first:20,second:15,third:10,half:10 "
-               "(+- nm about emission = 1, 2, 3, 1/2 x excitation; never the diagonal) and "
-               "box:300-350x500-560 (excitation x emission)")
+    command
+        ->add_option("--mask", options->mask,
+                     "entries that count as not measured: auto (scatter of the monochromators that "
+                     "stands out), none, or a list such as first:20,second:15,third:10,half:10 "
+                     "(+- nm about emission = 1, 2, 3, 1/2 x excitation; never the diagonal) and "
+                     "box:300-350x500-560 (excitation x emission)")
         ->capture_default_str();
-    add_option(*command, "--memory-limit", options->memory_limit_bytes,
-               "refuse a fit that would take more bytes (default: 80 % of the machine's)");
-    add_option(*command, "--loss", options->loss,
-               "how outliers count: none (as all others), huber or cauchy (less)")
+    command->add_option("--memory-limit", options->memory_limit_bytes,
+                        "refuse a fit that would take more bytes (default: 80 % of the machine's)");
+    command
+        ->add_option("--loss", options->loss,
+                     "how outliers count: none (as all others), huber or cauchy (less)")
         ->capture_default_str();
-    add_option(*command, "--stack", options->stack,
-               "MATERIAL.toml whose layers lay above the sample");
-    add_option(*command, "--unknown", options->unknown,
-               "numbers of the stack that are fitted, too: thickness,absorption,ior")
+    command->add_option("--stack", options->stack,
+                        "MATERIAL.toml whose layers lay above the sample");
+    command
+        ->add_option("--unknown", options->unknown,
+                     "numbers of the stack that are fitted, too: thickness,absorption,ior")
         ->delimiter(',');
-    add_flag(*command, "--anti-stokes", options->anti_stokes,
-             "emission below the excitation is possible");
-    add_option(*command, "--report", options->report, "HTML report to write");
-    add_option(*command, "--model-file", options->model_file,
-               "compact model as TOML, usable as RERADIATION");
-    add_option(*command, "--most-seconds", options->seconds, "time limit of one minimisation")
+    command->add_flag("--anti-stokes", options->anti_stokes,
+                      "emission below the excitation is possible");
+    command->add_option("--report", options->report, "HTML report to write");
+    command->add_option("--model-file", options->model_file,
+                        "compact model as TOML, usable as RERADIATION");
+    command->add_option("--most-seconds", options->seconds, "time limit of one minimisation")
         ->check(positive_number())
         ->capture_default_str();
-    add_option(*command, "--most-iterations", options->iterations,
-               "limit of Ceres' steps in one minimisation")
+    command
+        ->add_option("--most-iterations", options->iterations,
+                     "limit of Ceres' steps in one minimisation")
         ->check(positive_number())
         ->capture_default_str();
-    add_option(*command, "--checkpoint", options->checkpoint_seconds,
-               "write MATRIX.csv.checkpoint every so many seconds")
+    command
+        ->add_option("--checkpoint", options->checkpoint_seconds,
+                     "write MATRIX.csv.checkpoint every so many seconds")
         ->check(positive_number())
         ->capture_default_str();
-    add_flag(*command, "--resume", options->resume,
-             "go on from MATRIX.csv.checkpoint where it exists");
+    command->add_flag("--resume", options->resume,
+                      "go on from MATRIX.csv.checkpoint where it exists");
     command->footer(
         "Exits with 3, everything written, when the data hold more than the model found "
         "in them.\nExample: reradiant fit orange.BFC -o orange.csv --report orange.html");

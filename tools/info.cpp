@@ -10,7 +10,6 @@
 #include "reradiant/scene.h"
 #include "reradiant/scene_file.h"
 #include "reradiant/spectral_image.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
@@ -173,9 +172,10 @@ void add_info_command(CLI::App& program, CommandContext& context) {
     auto file = std::make_shared<fs::path>();
     CLI::App* const command = program.add_subcommand(
         "info", "Says what a file holds: image, re-radiation matrix, spectrum, scene, material");
-    add_option(
-        *command, "FILE", *file,
-        "EXR, CSV, BFC, SPD, TOML or XML file, or a spectrum of JCAMP-DX, CGATS or IES TM-27")
+    command
+        ->add_option(
+            "FILE", *file,
+            "EXR, CSV, BFC, SPD, TOML or XML file, or a spectrum of JCAMP-DX, CGATS or IES TM-27")
         ->required();
     command->footer("Example: reradiant info out.exr");
     command->callback([file, &context] {

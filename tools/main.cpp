@@ -1,6 +1,5 @@
 #include "host/cluster/cluster.h"
 #include "reradiant/error.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/versions.h"
 
@@ -40,20 +39,21 @@ void add_commands(CLI::App& program, CommandContext& context) {
 }
 
 void add_common_options(CLI::App& command, CommonOptions& common) {
-    add_option(command, "--device", common.device,
-               "OpenCL device by (part of its) name or index, see `devices`")
+    command
+        .add_option("--device", common.device,
+                    "OpenCL device by (part of its) name or index, see `devices`")
         ->envname("RERADIANT_DEVICE");
-    add_option(command, "--seed", common.seed, "seed of the random numbers")->capture_default_str();
-    add_option(command, "--threads", common.threads, "threads of the host, 0: all")
+    command.add_option("--seed", common.seed, "seed of the random numbers")->capture_default_str();
+    command.add_option("--threads", common.threads, "threads of the host, 0: all")
         ->check(CLI::Range(0, 65536))
         ->capture_default_str();
-    add_option(command, "--json", common.json, "write a machine-readable result to this file");
-    CLI::Option* const quiet = add_flag(command, "--quiet", common.quiet,
-                                        "no warnings, no progress, no word of what was "
-                                        "written; results (of colour, info, check, ...) "
-                                        "are printed all the same");
-    add_flag(command, "--verbose", common.verbose,
-             "say more: each material's model, what was left out")
+    command.add_option("--json", common.json, "write a machine-readable result to this file");
+    CLI::Option* const quiet = command.add_flag("--quiet", common.quiet,
+                                                "no warnings, no progress, no word of what was "
+                                                "written; results (of colour, info, check, ...) "
+                                                "are printed all the same");
+    command
+        .add_flag("--verbose", common.verbose, "say more: each material's model, what was left out")
         ->excludes(quiet);
     command.set_version_flag("--version", version_text());
     // Before the command's own callback runs, so that its messages obey.

@@ -9,7 +9,6 @@
 #include "reradiant/error.h"
 #include "reradiant/paths.h"
 #include "reradiant/scene_file.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
@@ -203,33 +202,35 @@ void add_measure_command(CLI::App& program, CommandContext& context) {
         "measure", "Measures a material with a virtual bispectral goniophotometer");
     CLI::Option_group* const source = command->add_option_group("material");
     source->require_option(1);
-    add_option(*source, "MATERIAL", options->material, "TOML file with one [material]");
-    add_option(*source, "--preset", options->preset, "a material of spectra/materials by name");
-    add_option(*command, "-o,--output", options->output, "CSV file to write")->required();
-    add_option(*command, "--theta-i", options->theta_i, "incident angles, degrees: 0,45")
+    source->add_option("MATERIAL", options->material, "TOML file with one [material]");
+    source->add_option("--preset", options->preset, "a material of spectra/materials by name");
+    command->add_option("-o,--output", options->output, "CSV file to write")->required();
+    command->add_option("--theta-i", options->theta_i, "incident angles, degrees: 0,45")
         ->delimiter(',');
-    add_option(*command, "--theta-o", options->theta_o, "outgoing angles, degrees: 5,20,60")
+    command->add_option("--theta-o", options->theta_o, "outgoing angles, degrees: 5,20,60")
         ->delimiter(',');
-    add_option(*command, "--phi", options->phi,
-               "azimuths of the outgoing from the incident direction; 180 is the mirror side")
+    command
+        ->add_option("--phi", options->phi,
+                     "azimuths of the outgoing from the incident direction; 180 is the mirror side")
         ->delimiter(',');
-    add_flag(*command, "--hemispherical", options->hemispherical,
-             "directional-hemispherical matrix instead of the BRDF");
-    add_option(*command, "--model", options->model, "auto, adding, weidlich-wilkie or walk");
-    add_option(*command, "--bands", options->bands,
-               "FROM:TO:STEP of band centres in nm; default: the matrix's own grid");
-    add_option(*command, "--samples", options->samples,
-               "paths per theta-i (model walk only; default 65536), in blocks of 256")
+    command->add_flag("--hemispherical", options->hemispherical,
+                      "directional-hemispherical matrix instead of the BRDF");
+    command->add_option("--model", options->model, "auto, adding, weidlich-wilkie or walk");
+    command->add_option("--bands", options->bands,
+                        "FROM:TO:STEP of band centres in nm; default: the matrix's own grid");
+    command
+        ->add_option("--samples", options->samples,
+                     "paths per theta-i (model walk only; default 65536), in blocks of 256")
         ->check(non_negative_number());
-    add_option(*command, "--checkpoint", options->checkpoint_seconds,
-               "write OUT.csv.checkpoint every so many seconds of walks")
+    command
+        ->add_option("--checkpoint", options->checkpoint_seconds,
+                     "write OUT.csv.checkpoint every so many seconds of walks")
         ->check(positive_number())
         ->capture_default_str();
-    add_flag(*command, "--resume", options->resume,
-             "go on from OUT.csv.checkpoint where it exists");
-    add_option(*command, "--memory-limit", options->memory_limit_bytes,
-               "refuse a measurement that would take more bytes (default: 80 % of the "
-               "machine's)");
+    command->add_flag("--resume", options->resume, "go on from OUT.csv.checkpoint where it exists");
+    command->add_option("--memory-limit", options->memory_limit_bytes,
+                        "refuse a measurement that would take more bytes (default: 80 % of the "
+                        "machine's)");
     command->footer("Example: reradiant measure lacquer.toml -o lacquer.csv --theta-i 45 "
                     "--theta-o 0,20,60 --phi 180");
     command->callback(

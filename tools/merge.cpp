@@ -4,7 +4,6 @@
 #include "host/film/image_memory.h"
 #include "host/report/json_file.h"
 #include "reradiant/error.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
 
@@ -56,12 +55,12 @@ void add_merge_command(CLI::App& program, CommandContext& context) {
     auto command = std::make_shared<MergeCommand>();
     CLI::App* const app = program.add_subcommand(
         "merge", "Adds partial renders of disjoint sample ranges, whatever their order");
-    add_option(*app, "PART", command->parts, "spectral EXR of `render --sample-range`")->required();
-    add_option(*app, "-o,--output", command->output, "spectral EXR to write")->required();
-    add_option(*app, "--png", command->png, "write the display image too");
-    add_option(*app, "--exposure", command->display.exposure_ev, "exposure of the images, EV");
-    add_option(*app, "--memory-limit", command->memory_limit_bytes,
-               "refuse parts that would take more bytes (default: 80 % of the machine's)");
+    app->add_option("PART", command->parts, "spectral EXR of `render --sample-range`")->required();
+    app->add_option("-o,--output", command->output, "spectral EXR to write")->required();
+    app->add_option("--png", command->png, "write the display image too");
+    app->add_option("--exposure", command->display.exposure_ev, "exposure of the images, EV");
+    app->add_option("--memory-limit", command->memory_limit_bytes,
+                    "refuse parts that would take more bytes (default: 80 % of the machine's)");
     app->footer("Example: reradiant render s.toml -o a.exr --sample-range 0:64\n"
                 "         reradiant render s.toml -o b.exr --sample-range 64:128\n"
                 "         reradiant merge a.exr b.exr -o all.exr");

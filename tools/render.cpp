@@ -13,7 +13,6 @@
 #include "reradiant/scene.h"
 #include "reradiant/scene_file.h"
 #include "reradiant/spectral_image.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
@@ -209,60 +208,59 @@ int run_render(RenderCommand command, const CommandContext& context) {
 }
 
 void add_stopping_options(CLI::App& app, RenderCommand& command) {
-    add_option(app, "--spp", command.render.samples,
-               "samples a pixel (64 unless --time or --error)")
+    app.add_option("--spp", command.render.samples, "samples a pixel (64 unless --time or --error)")
         ->check(CLI::Range(1u, 1u << 30))
         ->each([&command](const std::string&) { command.samples_given = true; });
-    add_option(app, "--time", command.render.time_seconds, "stop after so many seconds")
+    app.add_option("--time", command.render.time_seconds, "stop after so many seconds")
         ->check(positive_number());
-    add_option(app, "--error", command.render.relmse,
-               "stop at this estimated relMSE: mean of (error / value)^2 over pixels and bands")
+    app.add_option("--error", command.render.relmse,
+                   "stop at this estimated relMSE: mean of (error / value)^2 over pixels and bands")
         ->check(positive_number());
-    add_option(app, "--sample-range", command.sample_range,
-               "only samples A to B - 1 of every pixel, as A:B");
-    add_option(app, "--checkpoint", command.render.checkpoint_seconds,
-               "write OUT.exr.checkpoint every so many seconds")
+    app.add_option("--sample-range", command.sample_range,
+                   "only samples A to B - 1 of every pixel, as A:B");
+    app.add_option("--checkpoint", command.render.checkpoint_seconds,
+                   "write OUT.exr.checkpoint every so many seconds")
         ->check(positive_number())
         ->capture_default_str();
-    add_flag(app, "--resume", command.render.resume,
-             "go on from OUT.exr.checkpoint where it exists");
-    add_option(app, "--memory-limit", command.render.memory_limit_bytes,
-               "refuse a render that would take more bytes (default: 80 % of the machine's)");
+    app.add_flag("--resume", command.render.resume,
+                 "go on from OUT.exr.checkpoint where it exists");
+    app.add_option("--memory-limit", command.render.memory_limit_bytes,
+                   "refuse a render that would take more bytes (default: 80 % of the machine's)");
 }
 
 void add_sampling_options(CLI::App& app, RenderCommand& command) {
-    add_option(app, "--model", command.model,
-               "auto, adding, weidlich-wilkie or walk for every material");
-    add_option(app, "--wavelengths", command.wavelengths,
-               "comb or comb:N: every path carries N wavelengths, spread over the film's bands "
-               "(default: one a band); hero or hero:N: N of these (default 4), drawn at "
-               "random, which is noisier");
-    add_option(app, "--comb-phase", command.phase,
-               "where in its band a wavelength of the comb lies. random: anywhere; centre: at "
-               "its centre")
+    app.add_option("--model", command.model,
+                   "auto, adding, weidlich-wilkie or walk for every material");
+    app.add_option("--wavelengths", command.wavelengths,
+                   "comb or comb:N: every path carries N wavelengths, spread over the film's bands "
+                   "(default: one a band); hero or hero:N: N of these (default 4), drawn at "
+                   "random, which is noisier");
+    app.add_option("--comb-phase", command.phase,
+                   "where in its band a wavelength of the comb lies. random: anywhere; centre: at "
+                   "its centre")
         ->check(CLI::IsMember({"random", "centre"}));
-    add_option(app, "--bands", command.bands, "film bands in nm, FROM:TO:STEP");
-    add_option(app, "--variance", command.variance, "bands: variance per band, too")
+    app.add_option("--bands", command.bands, "film bands in nm, FROM:TO:STEP");
+    app.add_option("--variance", command.variance, "bands: variance per band, too")
         ->check(CLI::IsMember({"bands"}));
-    add_flag(app, "--adaptive", command.render.adaptive,
-             "more samples where the error is; --spp is then the mean over pixels");
-    add_flag(app, "--all-features", command.render.all_features,
-             "compile everything, also what the scene does not need");
-    add_flag(app, "--double", command.render.in_double,
-             "kernels in double precision, to see what single costs (sums over wavelengths and "
-             "what is stored stay single)");
-    add_option(app, "--batch", command.render.batch_paths,
-               "paths in flight; the image does not depend on it")
+    app.add_flag("--adaptive", command.render.adaptive,
+                 "more samples where the error is; --spp is then the mean over pixels");
+    app.add_flag("--all-features", command.render.all_features,
+                 "compile everything, also what the scene does not need");
+    app.add_flag("--double", command.render.in_double,
+                 "kernels in double precision, to see what single costs (sums over wavelengths and "
+                 "what is stored stay single)");
+    app.add_option("--batch", command.render.batch_paths,
+                   "paths in flight; the image does not depend on it")
         ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24));
 }
 
 void add_display_options(CLI::App& app, RenderCommand& command) {
-    add_option(app, "--png", command.png, "write the display image too");
-    add_option(app, "--tev", command.tev, "HOST:PORT of the viewer tev: shows every pass there");
-    add_option(app, "--ocio", command.display.ocio_config, "OpenColorIO config");
-    add_option(app, "--display", command.display.display, "display of the config");
-    add_option(app, "--view", command.display.view, "view of the display");
-    add_option(app, "--exposure", command.display.exposure_ev, "exposure of the display image, EV");
+    app.add_option("--png", command.png, "write the display image too");
+    app.add_option("--tev", command.tev, "HOST:PORT of the viewer tev: shows every pass there");
+    app.add_option("--ocio", command.display.ocio_config, "OpenColorIO config");
+    app.add_option("--display", command.display.display, "display of the config");
+    app.add_option("--view", command.display.view, "view of the display");
+    app.add_option("--exposure", command.display.exposure_ev, "exposure of the display image, EV");
 }
 
 } // namespace
@@ -270,8 +268,8 @@ void add_display_options(CLI::App& app, RenderCommand& command) {
 void add_render_command(CLI::App& program, CommandContext& context) {
     auto command = std::make_shared<RenderCommand>();
     CLI::App* app = program.add_subcommand("render", "path traces a scene to a spectral EXR");
-    add_option(*app, "SCENE", command->scene, "scene file (TOML, or XML of Mitsuba 3)")->required();
-    add_option(*app, "-o,--output", command->output, "spectral EXR to write")->required();
+    app->add_option("SCENE", command->scene, "scene file (TOML, or XML of Mitsuba 3)")->required();
+    app->add_option("-o,--output", command->output, "spectral EXR to write")->required();
     add_stopping_options(*app, *command);
     add_sampling_options(*app, *command);
     add_display_options(*app, *command);

@@ -7,7 +7,6 @@
 #include "host/study/study/sheet_exposure.h"
 #include "host/study/study/study_page.h"
 #include "host/study/study/study_store.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
@@ -115,17 +114,17 @@ void add_study_command(CLI::App& program, CommandContext& context) {
     auto command = std::make_shared<StudyCommand>();
     CLI::App* const app = program.add_subcommand(
         "study", "Sweeps parameters of a scene or material: renders, measurements and a page");
-    add_option(*app, "STUDY", command->study, "study file (TOML)")->required();
-    add_option(*app, "-o,--output", command->options.folder, "folder to write to")->required();
-    add_option(*app, "--memory-limit", command->options.render.memory_limit_bytes,
-               "refuse a render that would take more bytes (default: 80 % of the machine's)");
-    add_option(*app, "--checkpoint", command->options.render.checkpoint_seconds,
-               "keep a cell's render every so many seconds")
+    app->add_option("STUDY", command->study, "study file (TOML)")->required();
+    app->add_option("-o,--output", command->options.folder, "folder to write to")->required();
+    app->add_option("--memory-limit", command->options.render.memory_limit_bytes,
+                    "refuse a render that would take more bytes (default: 80 % of the machine's)");
+    app->add_option("--checkpoint", command->options.render.checkpoint_seconds,
+                    "keep a cell's render every so many seconds")
         ->check(positive_number())
         ->capture_default_str();
-    add_flag(*app, "--resume", command->options.resume,
-             "refuse what was kept of another scene, build or device; without it such a cell "
-             "begins anew");
+    app->add_flag("--resume", command->options.resume,
+                  "refuse what was kept of another scene, build or device; without it such a cell "
+                  "begins anew");
     app->footer("All pictures have one exposure, chosen by what they show; exposure_ev in the "
                 "study's [render] sets it.\n"
                 "Example: reradiant study study.toml -o results");

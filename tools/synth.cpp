@@ -4,7 +4,6 @@
 #include "reradiant/error.h"
 #include "reradiant/reradiation.h"
 #include "reradiant/reradiation_file.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
 
@@ -91,14 +90,15 @@ void add_synth_command(CLI::App& program, CommandContext& context) {
     auto options = std::make_shared<SynthOptions>();
     CLI::App* const command = program.add_subcommand(
         "synth", "Synthetic bispectral data of known fluorophores, with an instrument's noise");
-    add_option(*command, "RECIPE", options->recipe, "TOML file, see tools/examples/synth-*.toml")
+    command->add_option("RECIPE", options->recipe, "TOML file, see tools/examples/synth-*.toml")
         ->required();
-    add_option(*command, "-o,--output", options->output,
-               "CSV to write: a measured re-radiation matrix, or with [geometry] what "
-               "`measure` writes, with standard errors")
+    command
+        ->add_option("-o,--output", options->output,
+                     "CSV to write: a measured re-radiation matrix, or with [geometry] what "
+                     "`measure` writes, with standard errors")
         ->required();
-    add_option(*command, "--truth", options->truth,
-               "write the substrate's matrix without noise (.csv, .exr, .bfc)");
+    command->add_option("--truth", options->truth,
+                        "write the substrate's matrix without noise (.csv, .exr, .bfc)");
     command->footer("Examples:\n"
                     "  reradiant synth tools/examples/synth-orange.toml -o ~/orange.csv --seed 7\n"
                     "  reradiant synth tools/examples/synth-varnished.toml -o ~/data.csv "

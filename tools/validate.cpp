@@ -19,7 +19,6 @@
 #include "reradiant/scene_file.h"
 #include "reradiant/spectral_image.h"
 #include "reradiant/synth.h"
-#include "tools/add_option.h"
 #include "tools/command.h"
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
@@ -230,12 +229,13 @@ void add_validate_command(CLI::App& program, CommandContext& context) {
         "validate", "Checks any file that another command takes, and says what it holds");
     CLI::Option_group* const what = command->add_option_group("what");
     what->require_option(1);
-    add_option(*what, "FILE", options->file,
-               "scene, material, layers, recipe or study (TOML, XML), matrix (CSV, BFC, EXR), "
-               "measurement, spectrum (also JCAMP-DX, CGATS, IES TM-27), polygons, mesh (PLY, "
-               "OBJ), image (EXR, PNG) or OpenColorIO config (.ocio)");
-    add_flag(*what, "--reference", options->reference,
-             "print every key of scene and material files, as Markdown");
+    what->add_option(
+        "FILE", options->file,
+        "scene, material, layers, recipe or study (TOML, XML), matrix (CSV, BFC, EXR), "
+        "measurement, spectrum (also JCAMP-DX, CGATS, IES TM-27), polygons, mesh (PLY, "
+        "OBJ), image (EXR, PNG) or OpenColorIO config (.ocio)");
+    what->add_flag("--reference", options->reference,
+                   "print every key of scene and material files, as Markdown");
     command->footer("Examples:\n"
                     "  reradiant validate scene.toml\n"
                     "  reradiant validate --reference > reference.md");
