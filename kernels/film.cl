@@ -1,9 +1,9 @@
 // Stage 6: adds a batch's paths to their pixels, one work-item a pixel, samples in order, so that
 // the sums do not depend on how samples were batched. Sums are compensated (Kahan 1965): a plain
 // float sum stops growing at 2^24 samples.
-#include "kernels/features.h"
-#include "kernels/portable.h"
-#include "kernels/shared.h"
+#include "kernels/core/features.h"
+#include "kernels/core/portable.h"
+#include "kernels/core/shared.h"
 
 #define FILM_ROWS (3 + FEATURE_BAND_VARIANCE)
 

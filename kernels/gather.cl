@@ -1,14 +1,14 @@
 // Stage 5: radiance of each path, from its last vertex back to the camera. At every vertex one
 // linear operator acts on a vector of wavelengths: L = T(o) B (T(i) L_in) + specular, where B
 // holds the substrate with all its interreflections (host/README.md).
-#include "kernels/features.h"
-#include "kernels/gather_hero.h"
-#include "kernels/gather_lanes.h"
-#include "kernels/gather_specular.h"
-#include "kernels/gather_substrate.h"
-#include "kernels/gather_walk.h"
-#include "kernels/portable.h"
-#include "kernels/shared.h"
+#include "kernels/core/features.h"
+#include "kernels/core/portable.h"
+#include "kernels/core/shared.h"
+#include "kernels/stages/gather_hero.h"
+#include "kernels/stages/gather_lanes.h"
+#include "kernels/stages/gather_specular.h"
+#include "kernels/stages/gather_substrate.h"
+#include "kernels/stages/gather_walk.h"
 
 /// Radiance that leaves a vertex; `radiance` holds what comes along `next` and receives the sum.
 void gather_vertex(const GatherContext* context, const VertexRecord* vertex, int lit,

@@ -1,12 +1,12 @@
 // Stage 1: camera rays. One work-item a path; path = local pixel * samples + local sample. The
 // batch's pixels follow each other from `first_pixel` on and go on with the same sample, or, where
 // they are `listed`, they are those of `pixels` from there on, each with its own.
-#include "kernels/camera.h"
-#include "kernels/features.h"
-#include "kernels/portable.h"
-#include "kernels/sequence.h"
-#include "kernels/shared.h"
-#include "kernels/wavelength.h"
+#include "kernels/core/features.h"
+#include "kernels/core/portable.h"
+#include "kernels/core/sequence.h"
+#include "kernels/core/shared.h"
+#include "kernels/core/wavelength.h"
+#include "kernels/scene/camera.h"
 
 __kernel void generate(__global RayRecord* rays, __global PathState* paths,
                        __global const PixelSamples* pixels, uint listed, CameraRecord camera,

@@ -1,17 +1,17 @@
 // Stage 3: at each hit, record a vertex, sample one light and one direction. Only scalars here:
 // directions, pdfs, weights. Wavelengths come in `gather`.
-#include "kernels/features.h"
-#include "kernels/layer_stack.h"
-#include "kernels/lights.h"
-#include "kernels/portable.h"
-#include "kernels/random.h"
-#include "kernels/sampling.h"
-#include "kernels/sequence.h"
-#include "kernels/shade_lights.h"
-#include "kernels/shade_surface.h"
-#include "kernels/shared.h"
+#include "kernels/core/features.h"
+#include "kernels/core/portable.h"
+#include "kernels/core/random.h"
+#include "kernels/core/sampling.h"
+#include "kernels/core/sequence.h"
+#include "kernels/core/shared.h"
+#include "kernels/scene/lights.h"
+#include "kernels/stack/layer_stack.h"
+#include "kernels/stages/shade_lights.h"
+#include "kernels/stages/shade_surface.h"
 #if FEATURE_WALK
-#include "kernels/walk.h"
+#include "kernels/walk/walk.h"
 #endif
 
 /// Random dimensions of walks through stacks, far from all others; each vertex of a path has a

@@ -1,15 +1,15 @@
-#include "host/atomic_file.h"
-#include "host/error.h"
-#include "host/paths.h"
+#include "host/base/atomic_file.h"
+#include "host/base/logging.h"
 #include "host/report/json_file.h"
-#include "host/scene/load_state.h"
+#include "host/scene/toml/load_state.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
 #include "tools/command.h"
 #include "tools/material_tree.h"
 #include "tools/outputs.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <iostream>
@@ -51,7 +51,7 @@ bool is_yes(const std::string& text, const std::string& option) {
     throw_input_error({}, fmt::format("--{} is \"{}\"", option, text), "answer yes or no");
 }
 
-/// From the command line, else from whoever sits at the terminal.
+/// Returns the answer from the command line, else from whoever sits at the terminal.
 bool answer_to(Question question, const ClassifyOptions& options) {
     const auto index = static_cast<std::size_t>(question);
     const QuestionText& text = question_texts().at(index);
@@ -97,8 +97,8 @@ Classification classify(const ClassifyOptions& options) {
         if (!options.answers.at(i).empty() &&
             std::find(result.asked.begin(), result.asked.end(), static_cast<Question>(i)) ==
                 result.asked.end())
-            spdlog::warn("--{} makes no difference: the tree does not ask it here",
-                         question_texts().at(i).option);
+            logging::warn("--{} makes no difference: the tree does not ask it here",
+                          question_texts().at(i).option);
     return result;
 }
 

@@ -1,15 +1,15 @@
-#include "host/atomic_file.h"
-#include "host/error.h"
+#include "host/base/atomic_file.h"
+#include "host/base/logging.h"
 #include "host/report/json_file.h"
 #include "host/report/svg.h"
-#include "host/spectral/colour_report.h"
-#include "host/spectral/matrix_io.h"
-#include "host/spectral/matrix_warnings.h"
+#include "host/spectral/colour/colour_report.h"
+#include "host/spectral/evidence/matrix_warnings.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation_file.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +70,7 @@ std::vector<ColourPolygon> read_polygons(const ColourOptions& options) {
     return polygons;
 }
 
-/// What one lamp shows of the matrix, and of the one that it is compared with.
+/// The colour of the matrix under one lamp, and that of the matrix that it is compared with.
 struct SeenPair {
     ColourReport report;
     std::optional<ColourReport> against;
@@ -149,7 +149,7 @@ void add_curves(std::vector<svg::Series>& series, const ColourReport& report, bo
     const MatrixColour& colour = report.colour;
     series.push_back({report.illuminant + " total" + suffix, colour.nm, colour.total});
     series.push_back({report.illuminant + " luminescent" + suffix, colour.nm, colour.luminescent});
-    if (reflected) // the same under every lamp
+    if (reflected) // drawn once: it is the same under every lamp
         series.push_back({"reflected" + suffix, colour.nm, colour.reflected});
 }
 
@@ -206,7 +206,7 @@ int run_colour(ColourOptions options, const CommonOptions& common) {
         const ColourReport& report = pair.report;
         json[report.illuminant] = colour_report_json(report);
         for (const std::string& warning : report.warnings)
-            spdlog::warn("{}: {}", options.matrix.string(), warning);
+            logging::warn("{}: {}", options.matrix.string(), warning);
         print(report, options);
     }
     write_plot(options, seen);

@@ -18,8 +18,8 @@ struct CommonOptions {
     bool verbose = false;
 };
 
-/// What every sub-command shares. A command's function adds itself to the program and leaves its
-/// result in `exit_code`; failures leave as Error and become exit codes in main.cpp:
+/// The state that every sub-command shares. A command's function adds itself to the program and
+/// leaves its result in `exit_code`; failures leave as Error and become exit codes in main.cpp:
 ///
 ///     void add_info_command(CLI::App& program, CommandContext& context) {
 ///         CLI::App* command = program.add_subcommand("info", "says what a file holds");

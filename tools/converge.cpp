@@ -1,10 +1,11 @@
-#include "host/study/converge.h"
-#include "host/error.h"
+#include "host/study/converge/converge.h"
 #include "host/film/display_picture.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
-#include "host/study/converge_page.h"
-#include "host/study/converge_store.h"
+#include "host/study/converge/converge_page.h"
+#include "host/study/converge/converge_store.h"
+#include "reradiant/error.h"
+#include "reradiant/scene_file.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
@@ -12,7 +13,7 @@
 #include "tools/outputs.h"
 #include "tools/parse_options.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <cstdio>
@@ -28,7 +29,8 @@ struct ConvergeCommand {
     std::string methods = "auto,auto+comb:16,weidlich-wilkie", bands;
 };
 
-/// What the run will take at most: methods and references of an earlier run are kept.
+/// Prints the time that the run will take at most: methods and references of an earlier run are
+/// kept.
 void print_plan(const ConvergeOptions& options) {
     const double methods = options.time_seconds * static_cast<double>(options.methods.size());
     const std::string of_methods =

@@ -1,20 +1,24 @@
-#include "host/atomic_file.h"
-#include "host/error.h"
-#include "host/output_file.h"
-#include "host/paths.h"
-#include "host/quiet_log.h"
+#include "host/base/atomic_file.h"
+#include "host/base/output_ending.h"
+#include "host/base/output_file.h"
+#include "host/base/quiet_log.h"
 #include "host/report/json_file.h"
-#include "host/scene/mitsuba_import.h"
-#include "host/scene/scene_table.h"
-#include "host/scene/toml_document.h"
-#include "host/spectral/matrix_io.h"
-#include "host/spectral/matrix_warnings.h"
-#include "host/spectral/spectrum_formats.h"
+#include "host/scene/mitsuba/mitsuba_import.h"
+#include "host/scene/toml/scene_table.h"
+#include "host/scene/toml/toml_document.h"
+#include "host/spectral/evidence/matrix_warnings.h"
+#include "host/spectral/spectrum/spectrum_formats.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/scene_file.h"
+#include "reradiant/spectrum_file.h"
 #include "tools/command.h"
 #include "tools/file_kind.h"
 #include "tools/outputs.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <functional>
 #include <memory>
@@ -26,7 +30,7 @@ namespace {
 
 struct ConvertOptions {
     std::filesystem::path in, out;
-    TableWords words; ///< of IN
+    TableWords words; ///< the user's words about the table in IN
     std::string out_rows, out_quantity;
 };
 
@@ -77,7 +81,7 @@ void write_if_it_loads(const ConvertOptions& options, const FileAction& write,
     write(options.out);
 }
 
-/// A measurement may keep its gaps where a CSV is written.
+/// Reads the matrix in IN; a measurement may keep its gaps where a CSV is written.
 ReradiationMatrix read_matrix(const ConvertOptions& options, Gaps gaps) {
     const TableForm form = table_form(options.words);
     if (gaps == Gaps::Refused)
@@ -140,7 +144,7 @@ void check_scene(const ConvertOptions& options, const std::string& text) {
     }
 }
 
-/// A scene of Mitsuba 3 as one of this program; files keep their places.
+/// Converts a scene of Mitsuba 3 to one of this program; files keep their places.
 void convert_scene(const ConvertOptions& options) {
     refuse_form_options(options, "scenes");
     refuse_out_options(options);
@@ -154,9 +158,10 @@ void convert_scene(const ConvertOptions& options) {
     write_text_atomically(options.out, text.str());
 }
 
-/// What was converted.
+/// Converts IN and returns what it was: "scene", "re-radiation matrix" or "spectrum".
 const char* convert(const ConvertOptions& options) {
-    // By what the files hold: a spectrum of IES TM-27 may end with .xml as a scene does.
+    // The content of the file decides, not its ending: a spectrum of IES TM-27 may end with .xml as
+    // a scene does.
     if (is_mitsuba_scene(options.in) && file_kind(options.in) == FileKind::Scene) {
         convert_scene(options);
         return "scene";
@@ -182,7 +187,7 @@ int run_convert(const ConvertOptions& options, const CommonOptions& common) {
     return 0;
 }
 
-/// What tells a plain table of numbers.
+/// Adds the options that say how a plain table of numbers is to be read.
 void add_table_options(CLI::App& command, ConvertOptions& options) {
     const char* const group = "A table that does not say what its numbers are";
     const auto choice = [](std::vector<std::string> words) {

@@ -1,6 +1,6 @@
 #include "tools/describe_material.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 
@@ -20,7 +20,7 @@ const char* substrate_name(SubstrateType type) {
     return "lambert";
 }
 
-/// Materials of a surface: 1, or the product of its textures' levels.
+/// Returns the count of materials of a surface: 1, or the product of its textures' levels.
 int variant_count(const Scene& scene, const Surface& surface) {
     int count = 1;
     for (const int texture : surface.textures)

@@ -1,16 +1,17 @@
 #pragma once
 
-#include "host/scene/scene.h"
+#include "reradiant/scene.h"
 
 #include <nlohmann/json.hpp>
 
 namespace reradiant {
 
-/// What a material holds, for `info` and `validate`.
+/// Returns the parts of a material as JSON, for `info` and `validate`.
 nlohmann::ordered_json describe_material(const Material& material);
 
-/// The same of every surface of a scene, with its textures, its count of variants (materials at
-/// levels of its textures) and its mixture; the material of a textured one is its first variant.
+/// Returns a description of every surface of a scene: what describe_material says of its material,
+/// its textures, its count of variants (materials at levels of its textures) and its mixture. The
+/// material of a textured surface is its first variant.
 nlohmann::ordered_json describe_surfaces(const Scene& scene);
 
 } // namespace reradiant

@@ -1,11 +1,11 @@
-#include "host/device/device.h"
+#include "host/base/logging.h"
 #include "host/device/driver_list.h"
 #include "host/report/json_file.h"
+#include "reradiant/device.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 
@@ -42,7 +42,7 @@ int run_devices(const CommonOptions& common) {
         Device("0"); // throws the error that says what to install
     nlohmann::ordered_json absent = nlohmann::ordered_json::array();
     for (const AbsentDriver& driver : absent_drivers()) {
-        spdlog::warn("{}", absent_driver_text(driver));
+        logging::warn("{}", absent_driver_text(driver));
         absent.push_back(
             {{"file", driver.file}, {"library", driver.library}, {"reason", driver.reason}});
     }

@@ -1,13 +1,14 @@
 #include "tools/file_kind.h"
 
-#include "host/error.h"
+#include "host/base/output_ending.h"
+#include "host/base/regular_file.h"
 #include "host/film/exr_channels.h"
-#include "host/regular_file.h"
-#include "host/scene/scene_table.h"
-#include "host/spectral/csv_lines.h"
-#include "host/spectral/matrix_io.h"
-#include "host/spectral/text_format.h"
-#include "host/spectral/text_reader.h"
+#include "host/scene/toml/scene_table.h"
+#include "host/spectral/text/csv_lines.h"
+#include "host/spectral/text/text_format.h"
+#include "host/spectral/text/text_reader.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation_file.h"
 
 #include <algorithm>
 #include <string>

@@ -8,7 +8,7 @@ enum class FileKind {
     Scene,
     Material,
     Layers, ///< a material without a substrate, as `fit --stack` takes it
-    Recipe, ///< of synth
+    Recipe, ///< the input of `synth`
     Study,
     Matrix,
     Measurement, ///< the CSV of `measure`
@@ -17,12 +17,12 @@ enum class FileKind {
     Polygons,     ///< regions of `colour --polygons`
     Mesh,
     Image,
-    DisplayConfig ///< of OpenColorIO
+    DisplayConfig ///< a configuration of OpenColorIO
 };
 
-/// What a file holds, by its ending and, where that leaves a choice, by its content: a .toml by its
-/// tables, an .exr with T channels is a matrix, a text what its first lines say, else a spectrum.
-/// Input Error for a file that cannot be opened.
+/// Returns the kind of a file by its ending and, where that leaves a choice, by its content: a
+/// .toml is told by its tables, an .exr with T channels is a matrix, and a text file is what its
+/// first lines say, else a spectrum. Throws an input Error for a file that cannot be opened.
 FileKind file_kind(const std::filesystem::path& file);
 
 } // namespace reradiant

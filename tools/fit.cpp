@@ -1,15 +1,17 @@
-#include "host/fit/fit.h"
-#include "host/error.h"
-#include "host/fit/fit_memory.h"
-#include "host/fit/fit_report.h"
-#include "host/fit/fit_summary.h"
-#include "host/fit/model_file.h"
-#include "host/fit/solve_journal.h"
+#include "reradiant/fit.h"
+#include "host/base/logging.h"
+#include "host/fit/result/fit_memory.h"
+#include "host/fit/result/fit_report.h"
+#include "host/fit/result/fit_summary.h"
+#include "host/fit/solver/solve_journal.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
-#include "host/scene/named_files.h"
-#include "host/scene/stack_file.h"
-#include "host/spectral/matrix_io.h"
+#include "host/scene/model/named_files.h"
+#include "host/scene/toml/stack_file.h"
+#include "reradiant/error.h"
+#include "reradiant/fit.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/scene_file.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
@@ -18,7 +20,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <cstdio>
@@ -98,14 +99,14 @@ void print_summary(const FitOptions& options, const FitResult& result) {
 
 void warn(const FitResult& result) {
     for (const std::string& warning : result.warnings)
-        spdlog::warn("{}", warning);
+        logging::warn("{}", warning);
     if (result.stack)
         for (const std::string& ambiguity : result.stack->ambiguities)
-            spdlog::warn("{}", ambiguity);
+            logging::warn("{}", ambiguity);
 }
 
-/// Says in the last line that residuals are not noise; the exit code. It is no failure where the
-/// user chose how much the model may hold.
+/// Says in the last line that residuals are not noise, and returns the exit code. It is no failure
+/// where the user chose how much the model may hold.
 int judge(const FitOptions& options, const CommonOptions& common, const FitResult& result) {
     if (result.shortfall.empty())
         return 0;
@@ -116,7 +117,7 @@ int judge(const FitOptions& options, const CommonOptions& common, const FitResul
     return was_chosen ? 0 : exit_not_within_noise;
 }
 
-/// What the steps of a fit depend on.
+/// Returns all that the steps of a fit depend on, by name.
 SampleIdentity fit_identity(const FitOptions& options, const FitSettings& settings,
                             const BispectralData& data) {
     const auto number = [](const auto& value) {
@@ -139,7 +140,7 @@ SampleIdentity fit_identity(const FitOptions& options, const FitSettings& settin
             {"most iterations", std::to_string(options.iterations)}};
 }
 
-/// Fits with a checkpoint; nothing when it was interrupted, which it says.
+/// Fits with a checkpoint. Returns nothing when it was interrupted, which it says.
 std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings settings,
                                       const BispectralData& data, bool quiet) {
     KeptWork kept(options.output, fit_identity(options, settings, data),
@@ -191,9 +192,10 @@ int run_fit(const FitOptions& options, const CommonOptions& common) {
                                       std::filesystem::absolute(options.model_file).parent_path());
         const double difference = write_model_file(options.model_file, result, beside);
         if (difference > 0.01)
-            spdlog::warn("{}: tables integrated over the bands differ from the fitted matrix by up "
-                         "to {:.1f} % of its peak",
-                         options.model_file.string(), 100.0 * difference);
+            logging::warn(
+                "{}: tables integrated over the bands differ from the fitted matrix by up "
+                "to {:.1f} % of its peak",
+                options.model_file.string(), 100.0 * difference);
     }
     if (!options.report.empty())
         write_fit_report(options.report, data, result);

@@ -1,19 +1,22 @@
-#include "host/error.h"
+#include "host/base/output_ending.h"
 #include "host/film/exr_channels.h"
-#include "host/film/spectral_image.h"
 #include "host/report/json_file.h"
-#include "host/scene/scene.h"
-#include "host/spectral/matrix_io.h"
-#include "host/spectral/matrix_warnings.h"
-#include "host/spectral/scatter_warnings.h"
-#include "host/spectral/spectrum_formats.h"
+#include "host/spectral/evidence/matrix_warnings.h"
+#include "host/spectral/evidence/scatter_warnings.h"
+#include "host/spectral/spectrum/spectrum_formats.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/scene.h"
+#include "reradiant/scene_file.h"
+#include "reradiant/spectral_image.h"
 #include "tools/command.h"
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
 #include "tools/outputs.h"
 #include "tools/print_tree.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/interruption.h"
+#include "reradiant/interruption.h"
 
 namespace reradiant {
 
@@ -10,7 +10,7 @@ constexpr int exit_interrupted = 130;
 /// interrupt_requested() between its steps and keeps what it has. The second one does.
 void catch_interrupts();
 bool interrupt_requested();
-/// The same for work that watches a flag.
+/// Returns a flag that is set once interrupt_requested() is true, for work that watches a flag.
 StopFlag interrupt_flag();
 
 } // namespace reradiant

@@ -1,13 +1,13 @@
 #include "tools/kept_work.h"
 
-#include "host/error.h"
-#include "host/render/render_identity.h"
-#include "host/render/work_checkpoint.h"
-#include "host/scene/sha256.h"
+#include "host/render/checkpoint/render_identity.h"
+#include "host/render/checkpoint/work_checkpoint.h"
+#include "host/scene/model/sha256.h"
+#include "reradiant/error.h"
 #include "tools/interrupt.h"
 #include "tools/outputs.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <fstream>

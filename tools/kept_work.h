@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/film/merge.h"
-#include "host/layers/stack.h"
-#include "host/spectral/grid.h"
+#include "reradiant/layer_stack.h"
+#include "reradiant/merge.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <nlohmann/json.hpp>
 
@@ -13,13 +13,13 @@
 
 namespace reradiant {
 
-/// The checkpoint of work whose state is numbers (host/render/work_checkpoint.h): a file beside the
-/// output, written every so many seconds and when somebody interrupts, removed when the work is
-/// done.
+/// The checkpoint of work whose state is numbers (host/render/checkpoint/work_checkpoint.h): a file
+/// beside the output, written every so many seconds and when somebody interrupts, removed when the
+/// work is done.
 class KeptWork {
 public:
-    /// None is written beside an output that is a device or a pipe. `identity` says what the work
-    /// depends on; the build is added here.
+    /// No checkpoint is written beside an output that is a device or a pipe. `identity` says what
+    /// the work depends on; the build is added here.
     KeptWork(const std::filesystem::path& output, SampleIdentity identity, double seconds);
 
     /// Gives `take` the state to go on from, where there is a checkpoint. Input Error for one that

@@ -1,5 +1,5 @@
 #include "host/cluster/cluster.h"
-#include "host/error.h"
+#include "reradiant/error.h"
 #include "tools/command.h"
 #include "tools/versions.h"
 

@@ -19,7 +19,7 @@ struct QuestionText {
 };
 const std::array<QuestionText, QUESTION_COUNT>& question_texts();
 
-/// What the tree says of a material.
+/// A `Classification` is the tree's answer for one material.
 struct Classification {
     std::string top, base;            ///< as the source words them
     std::string letters;              ///< classes of "Final Classification", best first
@@ -31,7 +31,7 @@ struct Classification {
 /// top over a coloured base (c) or a smooth one over rough metal (e).
 Classification classify_material(const std::function<bool(Question)>& answer);
 
-/// One of the seed's classes of layered materials.
+/// One of the classes of layered materials that the letters a to h of the tree stand for.
 struct MaterialClass {
     char letter;
     const char* name;
@@ -39,7 +39,7 @@ struct MaterialClass {
     std::vector<const char*> presets; ///< the first is the class's own, to start from
 };
 const std::vector<MaterialClass>& material_classes();
-/// The class of a letter a to h.
+/// Returns the class of a letter a to h.
 const MaterialClass& material_class(char letter);
 
 } // namespace reradiant

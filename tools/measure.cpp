@@ -1,11 +1,14 @@
-#include "host/measure/measure.h"
-#include "host/error.h"
+#include "reradiant/measure.h"
+#include "host/measure/measure_substrate.h"
+#include "host/measure/walk_continuation.h"
 #include "host/measure/walk_measurement.h"
 #include "host/measure/walk_states.h"
-#include "host/paths.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
-#include "host/scene/named_files.h"
+#include "host/scene/model/named_files.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
+#include "reradiant/scene_file.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/kept_work.h"
@@ -28,7 +31,8 @@ namespace reradiant {
 
 namespace {
 
-/// What WalkState counts of one theta_i: every group of blocks goes on by itself.
+/// The blocks that the WalkState of one theta_i counts when it is done: the groups of blocks
+/// advance in step, and the state counts the blocks that each of the 16 has done.
 constexpr double blocks_in_state = static_cast<double>(walk_blocks) / 16.0;
 
 struct MeasureOptions {
@@ -44,9 +48,8 @@ struct MeasureOptions {
 };
 
 std::filesystem::path material_file(const MeasureOptions& options) {
-    if (options.preset.empty()) {
+    if (options.preset.empty())
         return options.material;
-    }
     const std::vector<std::string> known = preset_names();
     if (std::find(known.begin(), known.end(), options.preset) == known.end()) {
         throw_input_error({}, fmt::format("no preset is called '{}'", options.preset),
@@ -55,7 +58,8 @@ std::filesystem::path material_file(const MeasureOptions& options) {
     return spectra_directory() / "materials" / (options.preset + ".toml");
 }
 
-/// What a walk depends on. The material's numbers stand for the files that it names.
+/// Returns all that a walk depends on, by name. The numbers of the material stand for the files
+/// that it names.
 SampleIdentity walk_identity(const std::filesystem::path& file, const Material& material,
                              const MeasureRequest& request) {
     const WavelengthGrid bands = measured_bands(material, request);
@@ -78,7 +82,7 @@ SampleIdentity walk_identity(const std::filesystem::path& file, const Material& 
 
 using WalkStates = std::function<std::vector<WalkState>()>;
 
-/// Shows how far walks are, seldom: their states are dear to ask for.
+/// Shows the progress of walks, seldom: their states are dear to ask for.
 class WalkProgress {
 public:
     WalkProgress(bool quiet, const MeasureRequest& request)
@@ -107,18 +111,20 @@ private:
     Clock::time_point next_{};
 };
 
-/// Measures with a checkpoint; nothing when it was interrupted, which it says.
+/// Measures with a checkpoint. Returns nothing when it was interrupted, which it says.
 std::optional<Measurement> measure_and_keep(const MeasureOptions& options, const Material& material,
                                             MeasureRequest request, bool quiet) {
     KeptWork kept(options.output, walk_identity(material_file(options), material, request),
                   options.checkpoint_seconds);
+    WalkContinuation walks;
     if (options.resume)
-        kept.resume([&](const nlohmann::json& state) { request.walked = walk_states_from(state); });
+        kept.resume([&](const nlohmann::json& state) { walks.states = walk_states_from(state); });
     WalkProgress progress(quiet, request);
-    request.pause = [&](const WalkStates& states) {
+    walks.pause = [&](const WalkStates& states) {
         kept.keep_when_due([&] { return walk_states_json(states()); });
         progress.update(states);
     };
+    request.walks = &walks;
     request.stop = interrupt_flag();
     catch_interrupts();
     try {
@@ -141,9 +147,8 @@ std::optional<Measurement> measure_file(const MeasureOptions& options,
     try {
         return measure_and_keep(options, material, request, common.quiet);
     } catch (const Error& error) {
-        if (error.kind() == Error::Kind::Input && error.position().file.empty()) {
+        if (error.kind() == Error::Kind::Input && error.position().file.empty())
             throw_input_error({file.string()}, error.what());
-        }
         throw;
     }
 }
@@ -158,9 +163,8 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
     request.samples = options.samples;
     request.seed = common.seed;
     request.memory_limit_bytes = options.memory_limit_bytes;
-    if (!options.bands.empty()) {
+    if (!options.bands.empty())
         request.bands = parse_bands_option(options.bands);
-    }
     check_outputs(common, {{"-o", options.output, {".csv"}}}, {options.material});
     // what computes in parallel asks the library how many threads there are
     std::optional<tbb::global_control> threads;
@@ -184,9 +188,8 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
     if (!common.quiet) {
         fmt::print("{}: {} rows, model {}\n", options.output.string(), measurement.rows.size(),
                    model_name(measurement.model));
-        for (const std::string& note : measurement.notes) {
+        for (const std::string& note : measurement.notes)
             fmt::print("{}\n", note);
-        }
     }
     return 0;
 }

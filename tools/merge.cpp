@@ -1,13 +1,13 @@
-#include "host/film/merge.h"
-#include "host/error.h"
+#include "reradiant/merge.h"
+#include "host/base/logging.h"
 #include "host/film/display_picture.h"
 #include "host/film/image_memory.h"
 #include "host/report/json_file.h"
+#include "reradiant/error.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <memory>
 
@@ -32,7 +32,7 @@ int run_merge(const MergeCommand& command, const CommandContext& context) {
     check_merge_memory(command.parts, command.memory_limit_bytes);
     MergedImage merged = merge_images(command.parts);
     for (const SampleRange& gap : merged.gaps)
-        spdlog::warn("samples {} to {} are missing", gap.first, gap.end - 1);
+        logging::warn("samples {} to {} are missing", gap.first, gap.end - 1);
     auto& attributes = merged.image.attributes;
     attributes["reradiant:commandLine"] = context.command_line;
     write_spectral_exr(command.output, merged.image, command.display.exposure_ev);

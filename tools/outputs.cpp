@@ -1,10 +1,10 @@
 #include "tools/outputs.h"
 
-#include "host/error.h"
-#include "host/output_ending.h"
-#include "host/output_file.h"
+#include "host/base/output_ending.h"
+#include "host/base/output_file.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 
@@ -12,7 +12,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Who writes what the name claims to be: another option of the command, or another command.
+/// Returns the advice on what writes a file with this ending: another option of the command, or
+/// another command.
 std::string who_writes(const std::string& ending, const NamedOutput& asked,
                        const std::vector<NamedOutput>& outputs) {
     for (const NamedOutput& output : outputs)
@@ -31,7 +32,7 @@ void check_ending(const NamedOutput& output, const std::vector<NamedOutput>& out
         : check_output_ending(output.file, output.endings, output.option, remedy);
 }
 
-/// The same for all names that links lead to one file by.
+/// Returns one and the same name for all names that lead to one file by links.
 fs::path one_name(const fs::path& file) {
     std::error_code ignored;
     return fs::weakly_canonical(fs::absolute(file), ignored);

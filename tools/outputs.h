@@ -16,7 +16,7 @@ struct NamedOutput {
     /// is refused, naming the option that writes it: an EXR called .png is none.
     std::vector<std::string> endings = {};
     bool ending_chooses = false; ///< which of them is written: one must be there
-    /// What to do for another format that no other option of the command writes.
+    /// The advice for another format, which no other option of the command writes.
     std::string elsewhere = {};
 };
 
@@ -28,11 +28,11 @@ void check_outputs(const CommonOptions& common, std::vector<NamedOutput> outputs
                    const std::vector<std::filesystem::path>& read = {},
                    const std::filesystem::path& folder = {});
 
-/// A folder to write results into, as it was given but without a slash at its end; refused as
-/// check_output_folder does, and where its name claims to be a file's.
+/// Returns a folder to write results into, as it was given but without a slash at its end. Refuses
+/// what check_output_folder refuses, and a name that claims to be a file's.
 std::filesystem::path output_directory(const std::filesystem::path& given);
 
-/// FILE.checkpoint beside an output; nothing where that is a device or a pipe.
+/// Returns FILE.checkpoint beside an output; nothing where that is a device or a pipe.
 std::filesystem::path checkpoint_beside(const std::filesystem::path& output);
 
 } // namespace reradiant

@@ -1,9 +1,9 @@
 #include "tools/parse_options.h"
 
-#include "host/error.h"
-#include "host/render/wavelength_text.h"
+#include "host/render/plan/wavelength_text.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <charconv>
 #include <optional>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "host/film/merge.h"
-#include "host/render/wavelength_plan.h"
-#include "host/scene/scene.h"
-#include "host/spectral/grid.h"
+#include "reradiant/merge.h"
+#include "reradiant/scene.h"
+#include "reradiant/wavelength_grid.h"
+#include "reradiant/wavelength_plan.h"
 
 #include <cstdint>
 #include <string>

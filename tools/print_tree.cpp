@@ -1,6 +1,6 @@
 #include "tools/print_tree.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include <string>

@@ -1,14 +1,13 @@
 #include "tools/reference.h"
 
 #include "host/film/png.h"
-#include "host/paths.h"
-#include "host/scene/key_reference.h"
-#include "host/scene/scene_table.h"
-#include "host/scene/toml_document.h"
+#include "host/scene/toml/key_reference.h"
+#include "host/scene/toml/scene_table.h"
+#include "host/scene/toml/toml_document.h"
+#include "reradiant/paths.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <filesystem>
 #include <fstream>

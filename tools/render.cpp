@@ -1,16 +1,18 @@
-#include "host/device/device.h"
-#include "host/error.h"
+#include "reradiant/render.h"
+#include "host/base/logging.h"
 #include "host/film/display_picture.h"
-#include "host/film/merge.h"
-#include "host/film/spectral_image.h"
-#include "host/render/render_identity.h"
-#include "host/render/render_statistics.h"
-#include "host/render/renderer.h"
-#include "host/render/team_render.h"
+#include "host/render/checkpoint/render_identity.h"
+#include "host/render/film/render_statistics.h"
+#include "host/render/wavefront/team_render.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
-#include "host/scene/named_files.h"
-#include "host/scene/scene.h"
+#include "host/scene/model/named_files.h"
+#include "reradiant/device.h"
+#include "reradiant/error.h"
+#include "reradiant/merge.h"
+#include "reradiant/scene.h"
+#include "reradiant/scene_file.h"
+#include "reradiant/spectral_image.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
@@ -20,7 +22,6 @@
 #include "tools/tev_preview.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -105,7 +106,7 @@ void print_summary(const RenderResult& result, const RenderCommand& command,
     fmt::print("left out of the kernels: {}\n", fmt::join(result.left_out, "; "));
 }
 
-/// Whether the output is this render already, with as many samples.
+/// Returns true when the output file is already this render, with as many samples.
 bool is_done(const RenderCommand& command, const Scene& scene, const Device& device) {
     std::error_code ignored;
     if (!command.render.resume ||
@@ -193,7 +194,7 @@ int run_render(RenderCommand command, const CommandContext& context) {
         return report_interruption(result, command);
     describe_image(result, scene, device, command.render, context.command_line);
     if (result.non_finite > 0)
-        spdlog::warn("{} samples were not finite and were left out", result.non_finite);
+        logging::warn("{} samples were not finite and were left out", result.non_finite);
     write_results(command, result);
     if (!common.json.empty()) {
         auto json = render_statistics(result, device, command.model);

@@ -1,19 +1,19 @@
-#include "host/study/study.h"
-#include "host/atomic_file.h"
+#include "host/study/study/study.h"
+#include "host/base/atomic_file.h"
 #include "host/film/display_picture.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
-#include "host/study/contact_sheet.h"
-#include "host/study/sheet_exposure.h"
-#include "host/study/study_page.h"
-#include "host/study/study_store.h"
+#include "host/study/study/contact_sheet.h"
+#include "host/study/study/sheet_exposure.h"
+#include "host/study/study/study_page.h"
+#include "host/study/study/study_store.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/join_team.h"
 #include "tools/number_options.h"
 #include "tools/outputs.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <memory>

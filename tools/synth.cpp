@@ -1,12 +1,13 @@
-#include "host/fit/synth.h"
-#include "host/error.h"
+#include "reradiant/synth.h"
 #include "host/report/json_file.h"
-#include "host/scene/named_files.h"
-#include "host/spectral/matrix_io.h"
+#include "host/scene/model/named_files.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/reradiation_file.h"
 #include "tools/command.h"
 #include "tools/outputs.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <memory>

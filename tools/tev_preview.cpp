@@ -1,9 +1,9 @@
 #include "tools/tev_preview.h"
 
-#include "host/error.h"
+#include "host/base/logging.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -154,7 +154,7 @@ bool TevPreview::send(const std::string& message) {
 }
 
 void TevPreview::give_up(const std::string& why) {
-    spdlog::warn("--tev {}: {}; the render goes on without a preview", address_, why);
+    logging::warn("--tev {}: {}; the render goes on without a preview", address_, why);
     if (socket_ >= 0)
         ::close(socket_);
     socket_ = -1;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/film/spectral_image.h"
+#include "reradiant/spectral_image.h"
 
 #include <string>
 

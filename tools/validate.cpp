@@ -1,20 +1,24 @@
-#include "host/error.h"
+#include "host/base/logging.h"
+#include "host/base/output_ending.h"
 #include "host/film/display_picture.h"
 #include "host/film/exr_channels.h"
-#include "host/film/spectral_image.h"
-#include "host/fit/bispectral_data.h"
-#include "host/fit/synth.h"
 #include "host/geometry/geometry.h"
 #include "host/report/json_file.h"
-#include "host/scene/image_io.h"
-#include "host/scene/mesh_io.h"
-#include "host/scene/scene.h"
-#include "host/scene/stack_file.h"
-#include "host/spectral/colour_polygons.h"
-#include "host/spectral/matrix_io.h"
-#include "host/spectral/matrix_warnings.h"
-#include "host/spectral/spectrum_formats.h"
-#include "host/study/study_file.h"
+#include "host/scene/images/image_io.h"
+#include "host/scene/meshes/mesh_io.h"
+#include "host/scene/toml/stack_file.h"
+#include "host/spectral/colour/colour_polygons.h"
+#include "host/spectral/evidence/matrix_warnings.h"
+#include "host/spectral/spectrum/spectrum_formats.h"
+#include "host/study/study/study_file.h"
+#include "reradiant/bispectral_data.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/scene.h"
+#include "reradiant/scene_file.h"
+#include "reradiant/spectral_image.h"
+#include "reradiant/synth.h"
 #include "tools/command.h"
 #include "tools/describe_material.h"
 #include "tools/file_kind.h"
@@ -22,8 +26,7 @@
 #include "tools/print_tree.h"
 #include "tools/reference.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <memory>
@@ -84,7 +87,7 @@ Json validate_matrix(const fs::path& file) {
         throw_input_error({file.string()}, error.what());
     }
     for (const auto& warning : warnings)
-        spdlog::warn("{}: {}", file.string(), warning);
+        logging::warn("{}: {}", file.string(), warning);
     result["warnings"] = warnings;
     return result;
 }

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <OpenColorIO/OpenColorIO.h>
 #include <OpenEXRConfig.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 #include <png.h>
 

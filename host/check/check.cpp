@@ -4,12 +4,13 @@
 #include "host/check/error_statistics.h"
 #include "host/check/probe_source.h"
 #include "host/device/buffer.h"
-#include "host/error.h"
+#include "host/device/opencl_device.h"
+#include "reradiant/error.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>
@@ -47,8 +48,8 @@ public:
 
     /// Results of the block's items; keeps the shortest time an item.
     std::span<const Real> run(std::span<const float> inputs, std::size_t items) {
-        device_.queue().enqueueWriteBuffer(in_.buffer(), CL_TRUE, 0, inputs.size_bytes(),
-                                           inputs.data());
+        device_.opencl().queue.enqueueWriteBuffer(in_.buffer(), CL_TRUE, 0, inputs.size_bytes(),
+                                                  inputs.data());
         if (results_.empty()) // drivers finish compiling at the first launch
             launch(1);
         const Clock::time_point start = Clock::now();
@@ -56,8 +57,8 @@ public:
         nanoseconds_ =
             std::min(nanoseconds_, 1e9 * seconds_since(start) / static_cast<double>(items));
         results_.resize(items * outputs_);
-        device_.queue().enqueueReadBuffer(out_.buffer(), CL_TRUE, 0, results_.size() * sizeof(Real),
-                                          results_.data());
+        device_.opencl().queue.enqueueReadBuffer(out_.buffer(), CL_TRUE, 0,
+                                                 results_.size() * sizeof(Real), results_.data());
         return results_;
     }
     double nanoseconds() const { return nanoseconds_; }
@@ -66,7 +67,7 @@ private:
     void launch(std::size_t items) {
         kernel_.bind(in_.buffer(), out_.buffer(), static_cast<cl_uint>(items), tables_.buffer());
         kernel_.launch(device_, items);
-        device_.queue().finish();
+        device_.opencl().queue.finish();
     }
 
     const Device& device_;
@@ -79,7 +80,7 @@ private:
     double nanoseconds_ = std::numeric_limits<double>::infinity();
 };
 
-/// What all functions of a run share.
+/// A `CheckRun` holds what all functions of a run share.
 struct CheckRun {
     const Device& device;
     const CheckOptions& options;
@@ -117,7 +118,7 @@ void keep_sample(const CheckedFunction& function, std::size_t hard, std::size_t 
     }
 }
 
-/// The same function in double: what it costs, and how far it is from the twin.
+/// Adds what the function costs in double, and how far its results there are from the twin's.
 void add_double(FunctionReport& report, std::span<const ItemError> errors, double nanoseconds) {
     report.double_nanoseconds = nanoseconds;
     for (const ItemError& error : errors)

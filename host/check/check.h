@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/device/device.h"
 #include "host/device/program.h"
+#include "reradiant/device.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -21,22 +21,22 @@ struct CheckOptions {
 /// Results of the first inputs of a function and by how much each may move, for a regression file.
 struct CheckSample {
     std::vector<float> results;
-    std::vector<float> budgets; ///< of each; infinite where a comparison decides
+    std::vector<float> budgets; ///< how much each may move; infinite where a comparison decides
 };
 
-/// What a function did on the device. Errors are largest over its outputs; relative ones as the
-/// function's Accuracy says.
+/// A `FunctionReport` says how a function did on the device. Errors are the largest over its
+/// outputs; relative ones are as the function's Accuracy says.
 struct FunctionReport {
     std::string name, header, reason;
     std::size_t inputs = 0;
     double max_ulp = 0.0, most_ulp = 0.0; ///< largest, and that which 99.9 % do not exceed
     double max_relative = 0.0, most_relative = 0.0;
-    double allowed_relative = 0.0; ///< of the latter
+    double allowed_relative = 0.0; ///< limit of `most_relative`
     double of_budget = 0.0;        ///< largest error over what OpenCL allows there
     double open_share = 0.0;       ///< over it, but a comparison may decide (CheckedFunction)
     std::size_t over_budget = 0, not_finite = 0;
     double nanoseconds = 0.0; ///< an evaluation, with its reading and writing
-    /// The same function in double; 0 where it was not asked for.
+    /// Time and error of the function in double; 0 where it was not asked for.
     double double_nanoseconds = 0.0, double_max_relative = 0.0;
     std::vector<std::string> failures; ///< why it does not pass; empty: it does
     CheckSample sample;
@@ -57,11 +57,11 @@ struct CheckReport {
 CheckReport check_device(const Device& device, const CheckOptions& options,
                          const std::function<void(const FunctionReport&)>& progress = {});
 
-/// Results of this run, to be compared with later.
+/// Saves the results of this run, to be compared with later.
 void save_results(const std::filesystem::path& file, const Device& device,
                   const CheckReport& report);
 
-/// What save_results wrote, by function.
+/// `SavedResults` holds what save_results wrote, by function.
 struct SavedResults {
     std::filesystem::path file;
     std::map<std::string, CheckSample> functions;

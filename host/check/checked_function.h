@@ -3,15 +3,16 @@
 #include "host/check/tracked.h"
 
 #include "host/check/arguments.h"
-#include "kernels/check_tables.h"
+#include "kernels/core/check_tables.h"
 
 #include <string>
 #include <vector>
 
 namespace reradiant {
 
-/// What 99.9 % of a function's results must keep, whatever the device's own errors are: the demand
-/// on the formula. Errors are relative to the result or to `floor`, whichever is larger.
+/// An `Accuracy` is what 99.9 % of a function's results must keep, whatever the device's own errors
+/// are: the demand on the formula. Errors are relative to the result or to `floor`, whichever is
+/// larger.
 struct Accuracy {
     double relative;
     double floor;
@@ -25,7 +26,7 @@ struct Accuracy {
 /// writes out[]; `twin` is the same text compiled with tracked numbers.
 struct CheckedFunction {
     std::string name;
-    std::string header; ///< of kernels/
+    std::string header; ///< file below kernels/
     Arguments arguments;
     std::size_t outputs;
     Accuracy accuracy;

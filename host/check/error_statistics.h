@@ -12,7 +12,7 @@ struct FunctionReport;
 
 constexpr std::size_t most_arguments = 16, most_outputs = 8;
 
-/// What one evaluation of a function came to, all outputs together.
+/// An `ItemError` is what one evaluation of a function came to, all outputs together.
 struct ItemError {
     double relative = 0.0, ulp = 0.0;
     double of_budget = 0.0;                    ///< largest error over what OpenCL allows
@@ -36,7 +36,7 @@ public:
     void judge(const CheckedFunction& function, FunctionReport& report);
 
 private:
-    std::vector<float> relative_, ulp_; ///< of random items
+    std::vector<float> relative_, ulp_; ///< errors of the random items
     double max_relative_ = 0.0, max_ulp_ = 0.0, of_budget_ = 0.0;
     std::size_t open_ = 0, random_ = 0, not_finite_ = 0, over_budget_ = 0;
 };

@@ -1,9 +1,9 @@
 #include "host/check/checked_function.h"
 
-#include "kernels/fresnel.h"
-#include "kernels/microfacet.h"
-#include "kernels/oren_nayar.h"
-#include "kernels/thin_film.h"
+#include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/microfacet.h"
+#include "kernels/scatter/oren_nayar.h"
+#include "kernels/scatter/thin_film.h"
 
 namespace reradiant {
 
@@ -23,13 +23,14 @@ std::vector<CheckedFunction> fresnel_functions() {
     const Argument index{Argument::Kind::Uniform, 0.05, 5.0, {0.05f, 0.999999f, 1.0f, 1.5f, 4.0f}};
     const Argument kappa{Argument::Kind::Uniform, 0.0, 10.0, {0.0f, 1e-6f, 0.1f, 3.0f, 10.0f}};
     return {
-        CHECKED_FUNCTION("fresnel_dielectric", "kernels/fresnel.h", (Arguments{cosine(), ior()}), 1,
-                         reflectance, out[0] = fresnel_dielectric(in[0], in[1])),
-        CHECKED_FUNCTION("fresnel_cos_transmitted", "kernels/fresnel.h",
+        CHECKED_FUNCTION("fresnel_dielectric", "kernels/scatter/fresnel.h",
+                         (Arguments{cosine(), ior()}), 1, reflectance,
+                         out[0] = fresnel_dielectric(in[0], in[1])),
+        CHECKED_FUNCTION("fresnel_cos_transmitted", "kernels/scatter/fresnel.h",
                          (Arguments{cosine(), ior()}), 1,
                          (Accuracy{1e-5, 1e-3, "falls as a root at the critical angle"}),
                          out[0] = fresnel_cos_transmitted(in[0], in[1])),
-        CHECKED_FUNCTION("fresnel_conductor", "kernels/fresnel.h",
+        CHECKED_FUNCTION("fresnel_conductor", "kernels/scatter/fresnel.h",
                          (Arguments{cosine(), index, kappa}), 1, reflectance,
                          out[0] = fresnel_conductor(in[0], in[1], in[2])),
     };
@@ -41,7 +42,7 @@ std::vector<CheckedFunction> film_functions() {
     const Argument thickness{Argument::Kind::Uniform, 0.0, 1500.0, {0.0f, 1e-3f, 100.0f, 1500.0f}};
     const Argument wavelength{Argument::Kind::Uniform, 300.0, 780.0, {300.0f, 550.0f, 780.0f}};
     return {CHECKED_FUNCTION(
-        "thin_film_reflectance", "kernels/thin_film.h",
+        "thin_film_reflectance", "kernels/scatter/thin_film.h",
         (Arguments{cosine(), medium, medium, medium, kappa, thickness, wavelength}), 1,
         (Accuracy{5e-5, 1e-2, "the phase, up to 75 radians, is wrong by as many roundings"}),
         out[0] = thin_film_reflectance(in[0], in[1], in[2], in[3], in[4], in[5], in[6]))};
@@ -50,31 +51,32 @@ std::vector<CheckedFunction> film_functions() {
 std::vector<CheckedFunction> oren_nayar_functions() {
     const Argument sigma{Argument::Kind::Uniform, 0.0, 1.6, {0.0f, 1e-4f, 0.2f, 0.34f, 1.57f}};
     return {
-        CHECKED_FUNCTION("oren_nayar_value", "kernels/oren_nayar.h",
+        CHECKED_FUNCTION("oren_nayar_value", "kernels/scatter/oren_nayar.h",
                          (Arguments{sigma, direction(), direction()}), 1, few_ulp,
                          out[0] = oren_nayar_value(in[0], CHECK_VECTOR(1), CHECK_VECTOR(4))),
-        CHECKED_FUNCTION("oren_nayar_albedo", "kernels/oren_nayar.h", (Arguments{sigma, cosine()}),
-                         1, few_ulp, out[0] = oren_nayar_albedo(in[0], in[1])),
-        CHECKED_FUNCTION("oren_nayar_mean_albedo", "kernels/oren_nayar.h", (Arguments{sigma}), 1,
-                         few_ulp, out[0] = oren_nayar_mean_albedo(in[0])),
+        CHECKED_FUNCTION("oren_nayar_albedo", "kernels/scatter/oren_nayar.h",
+                         (Arguments{sigma, cosine()}), 1, few_ulp,
+                         out[0] = oren_nayar_albedo(in[0], in[1])),
+        CHECKED_FUNCTION("oren_nayar_mean_albedo", "kernels/scatter/oren_nayar.h",
+                         (Arguments{sigma}), 1, few_ulp, out[0] = oren_nayar_mean_albedo(in[0])),
     };
 }
 
 // D, Lambda, G, value, sampling and density of one distribution. A facet is given by its slopes in
 // units of alpha; the second direction is the first one's mirror image in it.
 #define MICROFACET_FUNCTIONS(distribution, label, least, most)                                     \
-    CHECKED_FUNCTION("microfacet_d " label, "kernels/microfacet.h",                                \
+    CHECKED_FUNCTION("microfacet_d " label, "kernels/scatter/microfacet.h",                        \
                      (Arguments{roughness(least, most), slope(), slope()}), 1, lobe,               \
                      const Vec3 h = vec3_normalise(vec3(in[0] * in[1], in[0] * in[2], REAL(1.0))); \
                      out[0] = microfacet_d(distribution, in[0], h)),                               \
         CHECKED_FUNCTION(                                                                          \
-            "microfacet_g2 " label, "kernels/microfacet.h",                                        \
+            "microfacet_g2 " label, "kernels/scatter/microfacet.h",                                \
             (Arguments{roughness(least, most), direction(), direction()}), 2,                      \
             (Accuracy{5e-6, 1e-6, "bounded by 1, smooth"}), const Vec3 wi = CHECK_VECTOR(1);       \
             const Vec3 wo = CHECK_VECTOR(4); const Vec3 h = vec3_normalise(vec3_add(wi, wo));      \
             out[0] = microfacet_g2(distribution, in[0], wi, wo, h);                                \
             out[1] = microfacet_g2_over_cosines(distribution, in[0], wi, wo, h)),                  \
-        CHECKED_FUNCTION("microfacet_reflection " label, "kernels/microfacet.h",                   \
+        CHECKED_FUNCTION("microfacet_reflection " label, "kernels/scatter/microfacet.h",           \
                          (Arguments{roughness(usual_alpha, most), slope(), slope(), direction()}), \
                          2, narrow_lobe(), const Vec3 wo = CHECK_VECTOR(3);                        \
                          const Vec3 h =                                                            \
@@ -83,12 +85,12 @@ std::vector<CheckedFunction> oren_nayar_functions() {
                          out[0] = microfacet_reflection(distribution, in[0], wi, wo);              \
                          out[1] = microfacet_reflection_cos(distribution, in[0], wi, wo)),         \
         CHECKED_FUNCTION(                                                                          \
-            "microfacet_pdf " label, "kernels/microfacet.h",                                       \
+            "microfacet_pdf " label, "kernels/scatter/microfacet.h",                               \
             (Arguments{roughness(least, most), slope(), slope(), direction()}), 1, lobe,           \
             const Vec3 h = vec3_normalise(vec3(in[0] * in[1], in[0] * in[2], REAL(1.0)));          \
             out[0] = microfacet_pdf(distribution, in[0], CHECK_VECTOR(3), h)),                     \
         CHECKED_FUNCTION(                                                                          \
-            "microfacet_sample " label, "kernels/microfacet.h",                                    \
+            "microfacet_sample " label, "kernels/scatter/microfacet.h",                            \
             (Arguments{roughness(least, most), direction(), unit(), unit()}), 3,                   \
             (Accuracy{1e-5, 1.0, "components of a unit vector"}),                                  \
             const Vec3 h = microfacet_sample(distribution, in[0], CHECK_VECTOR(1), in[4], in[5]);  \
@@ -115,15 +117,15 @@ std::vector<CheckedFunction> microfacet_functions() {
         MICROFACET_FUNCTIONS(MICROFACET_GGX, "ggx", 1e-4, 1.0),
         MICROFACET_FUNCTIONS(MICROFACET_BECKMANN, "beckmann", 1e-4, 1.0),
         MICROFACET_FUNCTIONS(MICROFACET_BLINN, "blinn", 1e-4, 0.99),
-        CHECKED_FUNCTION("microfacet_lambda_cos ggx", "kernels/microfacet.h",
+        CHECKED_FUNCTION("microfacet_lambda_cos ggx", "kernels/scatter/microfacet.h",
                          (Arguments{alpha(), direction()}), 1, few_ulp,
                          out[0] = microfacet_lambda_cos(MICROFACET_GGX, in[0], CHECK_VECTOR(1))),
         CHECKED_FUNCTION(
-            "microfacet_lambda_cos beckmann", "kernels/microfacet.h",
+            "microfacet_lambda_cos beckmann", "kernels/scatter/microfacet.h",
             (Arguments{alpha(), direction()}), 1,
             (Accuracy{1e-5, 1e-2, "a difference; stands beside the cosine, never alone"}),
             out[0] = microfacet_lambda_cos(MICROFACET_BECKMANN, in[0], CHECK_VECTOR(1))),
-        CHECKED_FUNCTION("microfacet_erfinv", "kernels/microfacet.h",
+        CHECKED_FUNCTION("microfacet_erfinv", "kernels/scatter/microfacet.h",
                          (Arguments{between(-1.0, 1.0)}), 1,
                          (Accuracy{1e-6, 1.0, "a polynomial in a logarithm"}),
                          out[0] = microfacet_erfinv(in[0])),

@@ -52,12 +52,12 @@ real dense(const real* in, const CheckTables* tables, uint o) {
 std::vector<CheckedFunction> reradiation_functions() {
     return {
         CHECKED_ON_DEVICE(
-            "reradiation_factored", "kernels/reradiation.h", radiances(), seen_count, sum,
+            "reradiation_factored", "kernels/stack/reradiation.h", radiances(), seen_count, sum,
             LANES_IN
             "reradiation_factored(down, up, tables->factors, CHECK_RANK); " LANES_OUT("up"),
             for (std::size_t i = 0; i < seen_count; ++i) out[i] = factored(in, tables, seen[i])),
             CHECKED_ON_DEVICE(
-                "reradiation_dense", "kernels/reradiation.h", radiances(), seen_count, sum,
+                "reradiation_dense", "kernels/stack/reradiation.h", radiances(), seen_count, sum,
                 LANES_IN "reradiation_dense(down, up, tables->dense); " LANES_OUT("up"),
                 for (std::size_t i = 0; i < seen_count; ++i) out[i] = dense(in, tables, seen[i])),
     };
@@ -80,7 +80,7 @@ std::vector<CheckedFunction> film_functions() {
     };
 }
 
-/// What leaves at one of four lanes of radiance at four others.
+/// Returns what leaves at the `j`-th of four lanes for radiance that arrives at four lanes.
 real shifted(const real* in, const CheckTables* tables, uint j) {
     constexpr uint to[] = {63, 40, 16, 0}, from[] = {0, 10, 20, 63};
     real result = 0.0;
@@ -98,20 +98,20 @@ uint searched(const CheckTables* tables, uint row, double u) {
 
 std::vector<CheckedFunction> hero_functions() {
     return {
-        CHECKED_ON_DEVICE("hero_rotated", "kernels/hero.h", (Arguments{unit()}), 4,
+        CHECKED_ON_DEVICE("hero_rotated", "kernels/stack/hero.h", (Arguments{unit()}), 4,
                           (Accuracy{0.0, 1.0, "a whole number"}),
                           "const HeroLanes lanes = hero_rotated(in[0], 3u, 50u); "
                           "for (uint j = 0u; j < HERO; ++j) out[j] = (float)hero_lane(lanes, j);",
                           const uint first = std::min(static_cast<uint>(in[0] * 50.0), 49U);
                           for (uint j = 0; j < 4; ++j) out[j] = 3U + (first + j * 50U / 4U) % 50U),
             CHECKED_ON_DEVICE(
-                "hero_search", "kernels/hero.h", (Arguments{integer(64), unit()}), 2, exact,
+                "hero_search", "kernels/stack/hero.h", (Arguments{integer(64), unit()}), 2, exact,
                 "const uint found = hero_search(tables->shift + (uint)in[0] * LANES, "
                 "in[1]); out[0] = (float)found; "
                 "out[1] = hero_probability(tables->shift + (uint)in[0] * LANES, 0u);",
                 const auto row = static_cast<uint>(in[0]);
                 out[0] = searched(tables, row, in[1].value); out[1] = tables->shift[row * LANES]),
-            CHECKED_ON_DEVICE("hero_factored", "kernels/hero.h", radiances(), 4, sum,
+            CHECKED_ON_DEVICE("hero_factored", "kernels/stack/hero.h", radiances(), 4, sum,
                               "const HeroLanes to = (HeroLanes)(63u, 40u, 16u, 0u), "
                               "from = (HeroLanes)(0u, 10u, 20u, 63u); "
                               "const Lanes value = hero_factored(to, from, (Lanes)(in[0], in[2], "

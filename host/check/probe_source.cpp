@@ -1,13 +1,13 @@
 #include "host/check/probe_source.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 
 std::string probe_source(std::span<const CheckedFunction> functions) {
-    std::string source = "#include \"kernels/portable.h\"\n"
-                         "#include \"kernels/check_tables.h\"\n"
-                         "#include \"kernels/random.h\"\n";
+    std::string source = "#include \"kernels/core/portable.h\"\n"
+                         "#include \"kernels/core/check_tables.h\"\n"
+                         "#include \"kernels/core/random.h\"\n";
     source += fmt::format("#include \"{}\"\n", functions.front().header);
     for (std::size_t i = 0; i < functions.size(); ++i) {
         const CheckedFunction& function = functions[i];
@@ -31,7 +31,7 @@ std::string probe_source(std::span<const CheckedFunction> functions) {
 
 KernelDefines probe_defines(const std::string& header, bool in_double) {
     KernelDefines defines;
-    if (header == "kernels/hero.h")
+    if (header == "kernels/stack/hero.h")
         defines.emplace_back("HERO", 4);
     if (in_double)
         defines.emplace_back("KERNELS_IN_DOUBLE", 1);

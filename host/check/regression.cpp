@@ -1,10 +1,10 @@
 #include "host/check/check.h"
 
-#include "host/error.h"
-#include "host/regular_file.h"
+#include "host/base/regular_file.h"
 #include "host/report/json_file.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 

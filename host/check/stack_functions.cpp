@@ -1,6 +1,6 @@
 #include "host/check/checked_function.h"
 
-#include "kernels/layer_stack.h"
+#include "kernels/stack/layer_stack.h"
 
 namespace reradiant {
 
@@ -13,23 +13,23 @@ const Accuracy lobe{5e-5, 1e-4, "half vectors of refracted directions times the 
 std::vector<CheckedFunction> model_a_functions() {
     const Arguments directions{direction(), direction()};
     return {
-        CHECKED_FUNCTION("layer_stack_descend", "kernels/layer_stack.h", directions, 4, share,
+        CHECKED_FUNCTION("layer_stack_descend", "kernels/stack/layer_stack.h", directions, 4, share,
                          const LayerDescent d =
                              layer_stack_descend(tables->layers, CHECK_LAYERS - 1u, 0,
                                                  CHECK_VECTOR(0), CHECK_VECTOR(3));
                          out[0] = d.way_in; out[1] = d.way_out; out[2] = d.wi.z; out[3] = d.wo.z),
             CHECKED_FUNCTION(
-                "layer_stack_nested_lobe metal", "kernels/layer_stack.h", directions, 2, lobe,
+                "layer_stack_nested_lobe metal", "kernels/stack/layer_stack.h", directions, 2, lobe,
                 const LayerFacet facet = layer_stack_facet(tables->layers, CHECK_LAYERS - 1u, 0,
                                                            CHECK_VECTOR(0), CHECK_VECTOR(3));
                 out[0] = facet.cos_h;
                 out[1] = layer_stack_nested_lobe(tables->layers, tables->lobes[0], 0, facet)),
             CHECKED_FUNCTION(
-                "layer_stack_nested_lobe slab", "kernels/layer_stack.h", directions, 1, lobe,
+                "layer_stack_nested_lobe slab", "kernels/stack/layer_stack.h", directions, 1, lobe,
                 const LayerFacet facet =
                     layer_stack_facet(tables->layers, 1u, 0, CHECK_VECTOR(0), CHECK_VECTOR(3));
                 out[0] = layer_stack_nested_lobe(tables->layers, tables->lobes[1], 0, facet)),
-            CHECKED_FUNCTION("layer_stack_diffuse", "kernels/layer_stack.h", directions, 2,
+            CHECKED_FUNCTION("layer_stack_diffuse", "kernels/stack/layer_stack.h", directions, 2,
                              (Accuracy{5e-6, 1.0, "one is a difference of shares"}),
                              const LayerStackView stack = CHECK_STACK;
                              const LayerDiffuse d =
@@ -44,18 +44,18 @@ std::vector<CheckedFunction> component_functions() {
     const Argument anisotropy{
         Argument::Kind::Uniform, -0.999, 0.9999, {-0.99f, 0.0f, 0.5f, 0.99f, 0.999f, 0.9999f}};
     return {
-        CHECKED_FUNCTION("layer_stack_choice", "kernels/layer_stack.h", (Arguments{cosine()}), 6,
-                         share, const LayerStackView stack = CHECK_STACK;
+        CHECKED_FUNCTION("layer_stack_choice", "kernels/stack/layer_stack.h", (Arguments{cosine()}),
+                         6, share, const LayerStackView stack = CHECK_STACK;
                          const LayerChoice choice = layer_stack_choice(stack, in[0]);
                          for (uint i = 0u; i < CHOICES; ++i) out[i] = choice.cumulative[i];
                          out[CHOICES] = choice.largest_albedo),
-            CHECKED_FUNCTION("layer_stack_pdf", "kernels/layer_stack.h",
+            CHECKED_FUNCTION("layer_stack_pdf", "kernels/stack/layer_stack.h",
                              (Arguments{direction(), direction()}), 1, lobe,
                              const LayerStackView stack = CHECK_STACK;
                              const Vec3 wo = CHECK_VECTOR(0);
                              const LayerChoice choice = layer_stack_choice(stack, wo.z);
                              out[0] = layer_stack_pdf(stack, &choice, wo, CHECK_VECTOR(3))),
-            CHECKED_FUNCTION("layer_stack_sample", "kernels/layer_stack.h",
+            CHECKED_FUNCTION("layer_stack_sample", "kernels/stack/layer_stack.h",
                              (Arguments{direction(), unit(), unit(), unit()}), 4,
                              (Accuracy{2e-5, 1.0, "components of a unit vector"}),
                              const LayerStackView stack = CHECK_STACK;
@@ -64,11 +64,11 @@ std::vector<CheckedFunction> component_functions() {
                              int is_delta; const Vec3 wi = layer_stack_sample(
                                                stack, &choice, wo, in[3], in[4], in[5], &is_delta);
                              CHECK_RESULT(0, wi); out[3] = (real)is_delta),
-            CHECKED_FUNCTION("layer_stack_top", "kernels/layer_stack.h",
+            CHECKED_FUNCTION("layer_stack_top", "kernels/stack/layer_stack.h",
                              (Arguments{direction(), direction()}), 1, lobe,
                              const LayerStackView stack = CHECK_STACK;
                              out[0] = layer_stack_top(stack, CHECK_VECTOR(0), CHECK_VECTOR(3))),
-            CHECKED_FUNCTION("layer_stack_phase", "kernels/layer_stack.h",
+            CHECKED_FUNCTION("layer_stack_phase", "kernels/stack/layer_stack.h",
                              (Arguments{anisotropy, deflection}), 1,
                              (Accuracy{1e-5, 1e-6, "1 - g and 1 - cos are formed once, exactly"}),
                              out[0] = layer_stack_phase(in[0], in[1])),

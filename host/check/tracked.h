@@ -26,7 +26,7 @@ constexpr double least_normal = 1.1754943508222875e-38;
 constexpr double unit_in_last_place = 0x1p-23;
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-/// Whether some comparison since it was cleared could have come out otherwise on the device.
+/// True when some comparison since it was cleared could have come out otherwise on the device.
 inline thread_local bool undecided = false;
 
 class Tracked {

@@ -1,6 +1,6 @@
 #include "host/check/checked_function.h"
 
-#include "kernels/walk_interface.h"
+#include "kernels/walk/walk_interface.h"
 
 namespace reradiant {
 
@@ -29,32 +29,34 @@ const Accuracy density{1e-3, 1e-2, "half vector's rounding times the slope of a 
 
 std::vector<CheckedFunction> facet_functions() {
     return {
-        CHECKED_FUNCTION("walk_visible_area", "kernels/walk_facets.h", (Arguments{SMITH, view()}),
-                         1, (Accuracy{1e-4, 1e-3, "beckmann's is a difference below the horizon"}),
+        CHECKED_FUNCTION("walk_visible_area", "kernels/walk/walk_facets.h",
+                         (Arguments{SMITH, view()}), 1,
+                         (Accuracy{1e-4, 1e-3, "beckmann's is a difference below the horizon"}),
                          const WalkSurface surface = CHECK_SURFACE;
                          out[0] = walk_visible_area(surface, CHECK_VECTOR(3))),
-            CHECKED_FUNCTION("walk_refracted", "kernels/walk_facets.h",
+            CHECKED_FUNCTION("walk_refracted", "kernels/walk/walk_facets.h",
                              (Arguments{ior(), direction(), direction()}), 3,
                              (Accuracy{1e-4, 1.0, "the root at the critical angle"}),
                              const Vec3 w = walk_refracted(CHECK_VECTOR(1), CHECK_VECTOR(4), in[0]);
                              CHECK_RESULT(0, w)),
             CHECKED_FUNCTION(
-                "walk_reflection_density", "kernels/walk_facets.h",
+                "walk_reflection_density", "kernels/walk/walk_facets.h",
                 (Arguments{SMITH, direction(), direction()}), 1, density,
                 const WalkSurface surface = CHECK_SURFACE;
                 out[0] = walk_reflection_density(surface, CHECK_VECTOR(3), CHECK_VECTOR(6))),
             CHECKED_FUNCTION(
-                "walk_refraction_density", "kernels/walk_facets.h",
+                "walk_refraction_density", "kernels/walk/walk_facets.h",
                 (Arguments{SMITH, direction(), direction()}), 1, density,
                 const WalkSurface surface = CHECK_SURFACE;
                 out[0] = walk_refraction_density(surface, CHECK_VECTOR(3), CHECK_VECTOR(6))),
             CHECKED_FUNCTION(
-                "walk_escape", "kernels/walk_facets.h", (Arguments{SMITH, direction(), height()}),
-                1, (Accuracy{1e-5, 1e-2, "an exponent that is large where little escapes"}),
+                "walk_escape", "kernels/walk/walk_facets.h",
+                (Arguments{SMITH, direction(), height()}), 1,
+                (Accuracy{1e-5, 1e-2, "an exponent that is large where little escapes"}),
                 const WalkSurface surface = CHECK_SURFACE;
                 out[0] = walk_escape(surface, CHECK_VECTOR(3), in[6])),
             CHECKED_FUNCTION(
-                "walk_next_height", "kernels/walk_facets.h",
+                "walk_next_height", "kernels/walk/walk_facets.h",
                 (Arguments{SMITH, any_direction(), height(), unit()}), 1,
                 (Accuracy{1e-4, 1e-2, "a quotient by Lambda, beckmann's a difference"}),
                 const WalkSurface surface = CHECK_SURFACE;
@@ -64,7 +66,7 @@ std::vector<CheckedFunction> facet_functions() {
 
 #define WALK_INTERFACE(label, least_distribution, alpha_factor, multiple, accuracy)                \
     CHECKED_FUNCTION(                                                                              \
-        "walk_interface " label, "kernels/walk_interface.h",                                       \
+        "walk_interface " label, "kernels/walk/walk_interface.h",                                  \
         (Arguments{integer(3 - (least_distribution)), walk_alpha(), ior(), direction(),            \
                    direction(), direction(), integer(1 << 24)}),                                   \
         7, accuracy,                                                                               \

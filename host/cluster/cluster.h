@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/team.h"
+#include "host/base/team.h"
 
 #include <memory>
 #include <string>
@@ -13,8 +13,9 @@ namespace reradiant {
 /// MPI when it is destroyed.
 std::unique_ptr<Team> join_cluster();
 
-/// For main's failures. The leader's message is printed where all fail alike; then this process and
-/// all others of its team end with `code`. Without a team prints the message and returns.
+/// Reports a failure of main. The leader's message is printed where all fail alike; then this
+/// process and all others of its team end with `code`. Without a team it prints the message and
+/// returns.
 void fail_in_cluster(int code, const std::string& message);
 
 /// "Open MPI v4.1.4"; "no MPI" when built without.

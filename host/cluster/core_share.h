@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/team.h"
+#include "host/base/team.h"
 
 namespace reradiant {
 

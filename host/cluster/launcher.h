@@ -5,8 +5,8 @@
 
 namespace reradiant {
 
-/// What launchers say about the processes that they start: Open MPI, MPICH and its kin, any through
-/// PMIx. A program that nobody launched need not wait for MPI's start.
+/// Returns true when a launcher says that it started this process: Open MPI, MPICH and its kin, or
+/// any through PMIx. A program that nobody launched need not wait for MPI's start.
 inline bool is_launched() {
     for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMIX_RANK"})
         if (std::getenv(name) != nullptr)
@@ -14,7 +14,7 @@ inline bool is_launched() {
     return false;
 }
 
-/// The first of these variables that is set, as a number.
+/// Returns the first of these variables that is set, as a number; `otherwise` when none is.
 inline int launcher_number(std::initializer_list<const char*> names, int otherwise) {
     for (const char* name : names)
         if (const char* text = std::getenv(name))
@@ -22,7 +22,7 @@ inline int launcher_number(std::initializer_list<const char*> names, int otherwi
     return otherwise;
 }
 
-/// As far as launchers say it.
+/// These return the number of processes and the rank of this one, as far as launchers say them.
 inline int launched_processes() {
     return launcher_number({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}, 1);
 }

@@ -1,6 +1,6 @@
 #include "host/cluster/cluster.h"
 #include "host/cluster/launcher.h"
-#include "host/error.h"
+#include "reradiant/error.h"
 
 #include <fmt/format.h>
 

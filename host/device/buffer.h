@@ -1,6 +1,7 @@
 #pragma once
 
-#include "host/device/device.h"
+#include "host/device/opencl_device.h"
+#include "reradiant/device.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -13,15 +14,17 @@ namespace reradiant {
 class DeviceStorage {
 public:
     DeviceStorage(const Device& device, std::size_t bytes)
-        : shared_(device.info().shares_memory ? shared_memory(device.context(), bytes) : nullptr,
-                  Release{device.context(), device.queue()}),
-          buffer_(shared_ ? cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR,
-                                       bytes, shared_.get())
-                          : cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR,
-                                       bytes)) {}
+        : shared_(device.info().shares_memory ? shared_memory(device.opencl().context, bytes)
+                                              : nullptr,
+                  Release{device.opencl().context, device.opencl().queue}),
+          buffer_(shared_
+                      ? cl::Buffer(device.opencl().context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR,
+                                   bytes, shared_.get())
+                      : cl::Buffer(device.opencl().context,
+                                   CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes)) {}
 
     const cl::Buffer& buffer() const { return buffer_; }
-    /// What the buffer lies in, or null where it must be mapped.
+    /// Returns the shared memory that the buffer lies in, or null where the buffer must be mapped.
     void* shared() const { return shared_.get(); }
 
 private:
@@ -35,13 +38,14 @@ private:
             clSVMFree(context(), memory);
         }
     };
-    /// Null when there is none: then a buffer of the driver's may still fit, or say what is wrong.
+    /// Returns null when there is no shared memory: then a buffer of the driver's may still fit, or
+    /// say what is wrong.
     static void* shared_memory(const cl::Context& context, std::size_t bytes) {
         return clSVMAlloc(context(), CL_MEM_READ_WRITE | CL_MEM_SVM_FINE_GRAIN_BUFFER, bytes, 0);
     }
 
     std::unique_ptr<void, Release> shared_;
-    cl::Buffer buffer_; // goes before what it lies in
+    cl::Buffer buffer_; // is destroyed before the memory that it lies in
 };
 
 /// An array that host and device use in turn. On devices that share memory with the host no data
@@ -59,8 +63,8 @@ public:
     DeviceArray(const Device& device, std::span<const T> values)
         : DeviceArray(device, values.size()) {
         if (!values.empty())
-            device.queue().enqueueWriteBuffer(buffer(), CL_TRUE, 0, values.size_bytes(),
-                                              values.data());
+            device.opencl().queue.enqueueWriteBuffer(buffer(), CL_TRUE, 0, values.size_bytes(),
+                                                     values.data());
     }
 
     const cl::Buffer& buffer() const { return storage_->buffer(); }
@@ -68,8 +72,8 @@ public:
     std::size_t bytes() const { return count_ * sizeof(T); }
 
     void fill_zero() const {
-        device_->queue().enqueueFillBuffer(buffer(), 0, 0,
-                                           std::max<std::size_t>(count_, 1) * sizeof(T));
+        device_->opencl().queue.enqueueFillBuffer(buffer(), 0, 0,
+                                                  std::max<std::size_t>(count_, 1) * sizeof(T));
     }
 
     /// Host view of [first, first + count) until destroyed. Waits for what was queued before.
@@ -77,7 +81,7 @@ public:
     public:
         Mapping(const DeviceArray& array, std::size_t first, std::size_t count, cl_map_flags flags)
             : array_(array), count_(count) {
-            const cl::CommandQueue& queue = array.device_->queue();
+            const cl::CommandQueue& queue = array.device_->opencl().queue;
             if (is_shared()) {
                 queue.finish();
                 data_ = static_cast<T*>(array.storage_->shared()) + first;
@@ -88,8 +92,8 @@ public:
         }
         ~Mapping() {
             if (!is_shared() && data_ != nullptr)
-                clEnqueueUnmapMemObject(array_.device_->queue()(), array_.buffer()(), data_, 0,
-                                        nullptr, nullptr);
+                clEnqueueUnmapMemObject(array_.device_->opencl().queue(), array_.buffer()(), data_,
+                                        0, nullptr, nullptr);
         }
         Mapping(const Mapping&) = delete;
         Mapping& operator=(const Mapping&) = delete;

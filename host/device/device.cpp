@@ -1,10 +1,11 @@
-#include "host/device/device.h"
+#include "reradiant/device.h"
 
 #include "host/device/driver_cache.h"
 #include "host/device/driver_list.h"
-#include "host/error.h"
+#include "host/device/opencl_device.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>
@@ -118,8 +119,8 @@ FoundDevice choose(const std::string& wanted) {
                         "choose one of " + names);
 }
 
-/// Where /sys is not mounted (bare chroots, some containers) hwloc finds neither memory nor cores
-/// and PoCL aborts the process; then hwloc is told about them.
+/// Tells hwloc about memory and cores if /sys is not mounted (bare chroots, some containers): it
+/// would find neither, and PoCL would abort the process.
 void describe_machine_without_sys() {
     std::error_code ignored;
     if (std::filesystem::is_directory("/sys/devices/system/cpu", ignored))
@@ -171,9 +172,11 @@ Device::Device(const std::string& name_or_index, bool may_share_memory) {
         FoundDevice found = choose(name_or_index);
         info_ = found.info;
         info_.shares_memory = info_.shares_memory && may_share_memory;
-        device_ = found.device;
-        context_ = cl::Context(device_);
-        queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE);
+        opencl_ = std::make_shared<OpenClDevice>();
+        opencl_->handle = found.device;
+        opencl_->context = cl::Context(found.device);
+        opencl_->queue =
+            cl::CommandQueue(opencl_->context, found.device, CL_QUEUE_PROFILING_ENABLE);
     });
 }
 

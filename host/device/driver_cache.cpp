@@ -1,9 +1,9 @@
 #include "host/device/driver_cache.h"
 
-#include "host/paths.h"
+#include "host/base/logging.h"
+#include "reradiant/paths.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <cerrno>
 #include <csignal>
@@ -27,7 +27,7 @@ bool is_running(const std::string& process) {
     return id > 0 && (::kill(static_cast<pid_t>(id), 0) == 0 || errno == EPERM);
 }
 
-/// What marks in the cache tell of the processes that used it.
+/// `Users` says what the marks in the cache folder tell of the processes that used it.
 struct Users {
     bool some_died = false, some_run = false;
 };
@@ -42,16 +42,17 @@ Users users_of(const fs::path& folder) {
     return users;
 }
 
-/// Moved away first, so that a program that starts meanwhile finds all of it or nothing.
+/// Discards a cache folder. It is moved away first, so that a program that starts meanwhile finds
+/// all of it or nothing.
 void discard(const fs::path& folder) {
     std::error_code ignored;
     fs::path away = folder;
     away += "-discarded-" + std::to_string(::getpid());
     fs::rename(folder, away, ignored);
     fs::remove_all(away, ignored);
-    spdlog::info("the last program that used {} died: kernels are built anew, in case one of them "
-                 "is damaged",
-                 folder.string());
+    logging::info("the last program that used {} died: kernels are built anew, in case one of them "
+                  "is damaged",
+                  folder.string());
 }
 
 /// The mark of this process; it goes when the process ends by itself.
@@ -66,19 +67,20 @@ void mark(const fs::path& folder) {
     });
 }
 
-/// What the user chose stays, unless PoCL could not use it: it would have no device then.
+/// Returns true when $POCL_CACHE_DIR names a folder that PoCL can use. With one that it cannot use
+/// PoCL would have no device, so that choice is not kept.
 bool user_has_chosen() {
     const char* const chosen = std::getenv("POCL_CACHE_DIR");
     if (chosen == nullptr || *chosen == '\0')
         return false;
     const std::string reason = why_unusable(chosen);
     if (!reason.empty())
-        spdlog::warn("$POCL_CACHE_DIR, {}, cannot be used: {}; PoCL's kernels go elsewhere", chosen,
-                     reason);
+        logging::warn("$POCL_CACHE_DIR, {}, cannot be used: {}; PoCL's kernels go elsewhere",
+                      chosen, reason);
     return reason.empty();
 }
 
-std::string problem; ///< what driver_cache_problem returns
+std::string problem; ///< returned by driver_cache_problem
 
 void choose_folder() {
     if (user_has_chosen())

@@ -11,7 +11,8 @@ namespace reradiant {
 /// warning says so. Calls after the first change nothing.
 void prepare_driver_cache();
 
-/// Why PoCL has no folder for its kernels, without which it offers no device; empty: it has one.
+/// Returns why PoCL has no folder for its kernels, without which it offers no device; empty when it
+/// has one.
 std::string driver_cache_problem();
 
 } // namespace reradiant

@@ -1,11 +1,12 @@
 #include "host/device/driver_list.h"
 
-#include "host/device/device.h"
-#include "host/regular_file.h"
+#include "host/base/regular_file.h"
+#include "host/device/opencl_device.h"
+#include "reradiant/device.h"
 
 #include <CL/cl_ext.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -23,7 +24,8 @@ std::string environment(const char* name) {
     return value ? value : "";
 }
 
-/// What registers drivers: .icd files, or libraries where a variable names them outright.
+/// Returns the files that register drivers: .icd files, or libraries where a variable names them
+/// outright.
 std::vector<fs::path> registrations() {
     std::vector<fs::path> found;
     fs::path place = "/etc/OpenCL/vendors";
@@ -49,7 +51,8 @@ std::vector<fs::path> registrations() {
     return found;
 }
 
-/// The first line of an .icd file; anything else is a library itself.
+/// Returns the library that a registration names: the first line of an .icd file; anything else is
+/// a library itself.
 std::string library_of(const fs::path& registration) {
     if (registration.extension() != ".icd")
         return registration.string();
@@ -60,7 +63,8 @@ std::string library_of(const fs::path& registration) {
     return last == std::string::npos ? "" : line.substr(0, last + 1);
 }
 
-/// Why the library offers no platform; empty: it does. The loader asks the same two functions.
+/// Returns why the library offers no platform, or nothing when it does. The loader asks the same
+/// two functions.
 std::string why_absent(const std::string& library) {
     // Never closed: a driver may have left threads behind.
     void* const handle = ::dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);

@@ -7,8 +7,8 @@ namespace reradiant {
 
 /// An OpenCL driver that is installed but offers no platform in this process.
 struct AbsentDriver {
-    std::string file;    ///< what registers it, for instance /etc/OpenCL/vendors/pocl.icd
-    std::string library; ///< that it names
+    std::string file;    ///< file that registers it, such as /etc/OpenCL/vendors/pocl.icd
+    std::string library; ///< that the file names
     std::string reason;
 };
 

@@ -1,12 +1,12 @@
 #include "host/device/program.h"
 
-#include "host/atomic_file.h"
+#include "host/base/atomic_file.h"
+#include "host/base/logging.h"
 #include "host/device/program_cache.h"
-#include "host/error.h"
-#include "host/paths.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>
@@ -26,11 +26,11 @@ bool load_binary(const Device& device, const std::string& binary, cl::Program& p
     try {
         const cl::Program::Binaries binaries{
             std::vector<unsigned char>(binary.begin(), binary.end())};
-        program = cl::Program(device.context(), {device.handle()}, binaries);
-        program.build({device.handle()}, build_options);
+        program = cl::Program(device.opencl().context, {device.opencl().handle}, binaries);
+        program.build({device.opencl().handle}, build_options);
         return true;
     } catch (const cl::Error& error) {
-        spdlog::debug("cached kernel refused by the driver: {}", opencl_error_name(error.err()));
+        logging::debug("cached kernel refused by the driver: {}", opencl_error_name(error.err()));
         return false;
     }
 }
@@ -38,7 +38,7 @@ bool load_binary(const Device& device, const std::string& binary, cl::Program& p
 /// A driver that fails may have no log either.
 std::string build_log(const Device& device, const cl::Program& program) {
     try {
-        return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle());
+        return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.opencl().handle);
     } catch (const cl::Error& error) {
         return "the driver has no log: " + opencl_error_name(error.err());
     }
@@ -68,15 +68,15 @@ std::size_t keep(const cl::Program& program, const fs::path& file) {
         write_cached_program(file, std::string(binaries[0].begin(), binaries[0].end()));
         return binaries[0].size();
     } catch (const std::exception& error) {
-        spdlog::debug("kernel not cached: {}", error.what()); // a cache is a convenience
+        logging::debug("kernel not cached: {}", error.what()); // a cache is a convenience
         return 0;
     }
 }
 
 cl::Program compile(const Device& device, const std::string& file, const std::string& source) {
-    cl::Program program(device.context(), source);
+    cl::Program program(device.opencl().context, source);
     try {
-        program.build({device.handle()}, build_options);
+        program.build({device.opencl().handle}, build_options);
     } catch (const cl::Error&) {
         report_failed_build(device, program, file, source);
     }
@@ -104,11 +104,11 @@ cl::Program build_source(const Device& device, const std::string& file, const st
     const std::string key =
         text_digest(fmt::format("{}\n{}\n{}\n{}\n{}\n{}", source, build_options, info.name,
                                 info.platform, info.driver, info.version));
-    std::optional<LoadedPrograms::Entry> entry = device.programs().find(key);
+    std::optional<LoadedPrograms::Entry> entry = device.opencl().programs.find(key);
     bool cached = entry.has_value();
     if (!entry) {
         std::tie(entry, cached) = load_or_compile(device, file, source, key);
-        device.programs().add(key, *entry);
+        device.opencl().programs.add(key, *entry);
     }
     if (statistics) {
         ++(cached ? statistics->from_cache : statistics->built);
@@ -147,8 +147,9 @@ Kernel::Kernel(const cl::Program& program, const char* name, std::size_t local_s
 cl::Event Kernel::launch(const Device& device, std::size_t items) const {
     const std::size_t groups = (items + local_size_ - 1) / local_size_;
     cl::Event event;
-    device.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups * local_size_),
-                                        cl::NDRange(local_size_), nullptr, &event);
+    device.opencl().queue.enqueueNDRangeKernel(kernel_, cl::NullRange,
+                                               cl::NDRange(groups * local_size_),
+                                               cl::NDRange(local_size_), nullptr, &event);
     return event;
 }
 

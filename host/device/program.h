@@ -1,22 +1,12 @@
 #pragma once
 
-#include "host/device/device.h"
+#include "host/device/opencl_device.h"
 #include "host/device/source.h"
 
 #include <cstddef>
 #include <string>
-#include <utility>
 
 namespace reradiant {
-
-/// What building the programs of a scene took.
-struct BuildStatistics {
-    int built = 0, from_cache = 0;
-    double seconds = 0.0;
-    std::size_t source_bytes = 0; ///< before the compiler leaves anything out
-    KernelDefines defines;        ///< of the last program
-    std::size_t binary_bytes = 0; ///< of the programs as the driver keeps them
-};
 
 /// Builds a kernel file ("kernels/gather.cl") for a device, or takes it from those that the
 /// device has loaded or from the disk cache, whose key is the source, the defines, the device and
@@ -26,7 +16,7 @@ struct BuildStatistics {
 cl::Program build_program(const Device& device, const std::string& file,
                           const KernelDefines& defines, BuildStatistics* statistics = nullptr);
 
-/// The same for a source that is no file.
+/// Builds a program as `build_program` does, from a source text that is no file.
 cl::Program build_program_from_text(const Device& device, const std::string& name,
                                     const std::string& text, const KernelDefines& defines,
                                     BuildStatistics* statistics = nullptr);
@@ -35,7 +25,8 @@ cl::Program build_program_from_text(const Device& device, const std::string& nam
 class Kernel {
 public:
     Kernel() = default;
-    /// Groups of `local_size` work-items, or of as many as the device can do for this kernel.
+    /// Takes the kernel `name` with groups of `local_size` work-items, or of as many as the device
+    /// can do for it.
     Kernel(const cl::Program& program, const char* name, std::size_t local_size);
 
     template <typename... Arguments>

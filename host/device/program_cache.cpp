@@ -1,9 +1,9 @@
 #include "host/device/program_cache.h"
 
-#include "host/atomic_file.h"
+#include "host/base/atomic_file.h"
+#include "host/base/regular_file.h"
 #include "host/device/source.h"
-#include "host/paths.h"
-#include "host/regular_file.h"
+#include "reradiant/paths.h"
 
 #include <iterator>
 #include <string_view>

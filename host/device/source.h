@@ -1,22 +1,20 @@
 #pragma once
 
+#include "reradiant/device.h"
+
 #include <filesystem>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace reradiant {
 
-/// Names and values that specialise a program, passed as #define.
-using KernelDefines = std::vector<std::pair<std::string, long>>;
-
-/// A kernel file ("kernels/gather.cl", relative to `root`) with its headers (`#include
+/// Returns a kernel file ("kernels/gather.cl", relative to `root`) with its headers (`#include
 /// "kernels/..."`) put in place, each once, and #line directives so that the compiler's messages
-/// name the real files. Run-time Error when a file is missing.
+/// name the real files. Throws a run-time Error when a file is missing.
 std::string kernel_source(const std::filesystem::path& root, const std::string& file,
                           const KernelDefines& defines);
 
-/// The same for a text that is no file; the compiler's messages call it `name`.
+/// Returns the source as `kernel_source` does, from a text that is no file; the compiler's messages
+/// call it `name`.
 std::string kernel_source_of_text(const std::filesystem::path& root, const std::string& name,
                                   const std::string& text, const KernelDefines& defines);
 

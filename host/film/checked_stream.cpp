@@ -1,6 +1,6 @@
 #include "host/film/checked_stream.h"
 
-#include "host/error.h"
+#include "reradiant/error.h"
 
 #include <cerrno>
 #include <cstring>

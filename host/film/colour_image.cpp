@@ -1,6 +1,6 @@
 #include "host/film/colour_image.h"
 
-#include "host/film/spectral_image.h"
+#include "reradiant/spectral_image.h"
 
 namespace reradiant {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/colour.h"
+#include "reradiant/colour.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
-#include "host/error.h"
 #include "host/film/colour_image.h"
-#include "host/film/spectral_image.h"
+#include "reradiant/error.h"
+#include "reradiant/spectral_image.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <limits>

@@ -1,14 +1,15 @@
-#include "host/error.h"
+#include "reradiant/spectral_image.h"
+
+#include "host/base/logging.h"
 #include "host/film/colour_image.h"
 #include "host/film/display_picture.h"
 #include "host/film/png.h"
-#include "host/film/spectral_image.h"
+#include "reradiant/error.h"
 
 #include <OpenColorIO/OpenColorIO.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -90,8 +91,8 @@ const char* add_path_to_config(const OCIO::Config& config, OCIO::GroupTransform&
                           "the OpenColorIO configuration has none of the roles "
                           "aces_interchange, cie_xyz_d65_interchange, scene_linear",
                           "add one of them to it");
-    spdlog::warn("the OpenColorIO configuration has no interchange role; its scene_linear space "
-                 "is taken to have the Rec. 709 primaries");
+    logging::warn("the OpenColorIO configuration has no interchange role; its scene_linear space "
+                  "is taken to have the Rec. 709 primaries");
     double matrix[16] = {};
     for (std::size_t column = 0; column < 3; ++column) {
         Xyz unit{0.0, 0.0, 0.0};

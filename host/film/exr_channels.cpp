@@ -1,7 +1,7 @@
 #include "host/film/exr_channels.h"
 
-#include "host/error.h"
-#include "host/exr_input.h"
+#include "host/exr/exr_input.h"
+#include "reradiant/error.h"
 
 #include <ImfChannelList.h>
 #include <ImfHeader.h>

@@ -1,9 +1,9 @@
 #include "host/film/image_memory.h"
 
-#include "host/exr_input.h"
-#include "host/exr_window.h"
+#include "host/base/memory_limit.h"
+#include "host/exr/exr_input.h"
+#include "host/exr/exr_window.h"
 #include "host/film/spectral_channels.h"
-#include "host/memory_limit.h"
 
 #include <ImfChannelList.h>
 

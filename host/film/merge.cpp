@@ -1,7 +1,7 @@
-#include "host/film/merge.h"
+#include "reradiant/merge.h"
 
-#include "host/error.h"
 #include "host/film/colour_image.h"
+#include "reradiant/error.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -63,7 +63,7 @@ SampleIdentity parse_identity(const std::string& text) {
     return identity;
 }
 
-/// What a part says about itself.
+/// A `PartHead` holds what the attributes of a part say about its samples.
 struct PartHead {
     fs::path file;
     std::vector<SampleRange> ranges;

@@ -1,7 +1,7 @@
 #include "host/film/png.h"
 
-#include "host/atomic_file.h"
-#include "host/error.h"
+#include "host/base/atomic_file.h"
+#include "reradiant/error.h"
 
 #include <png.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/spectral_names.h"
+#include "host/spectral/spectrum/spectral_names.h"
 
 #include <optional>
 #include <string>

@@ -1,9 +1,10 @@
-#include "host/error.h"
-#include "host/exr_input.h"
-#include "host/exr_window.h"
+#include "reradiant/spectral_image.h"
+
+#include "host/exr/exr_input.h"
+#include "host/exr/exr_window.h"
 #include "host/film/exr_layout.h"
 #include "host/film/spectral_channels.h"
-#include "host/film/spectral_image.h"
+#include "reradiant/error.h"
 
 #include <ImfChannelList.h>
 #include <ImfDoubleAttribute.h>
@@ -106,7 +107,8 @@ WavelengthGrid grid_of(const fs::path& file, const Imf::Header& header,
     }
 }
 
-/// Where one channel's values go: `stride` floats from one pixel to the next.
+/// A `Target` says where the values of one channel go; `stride` is the number of floats from one
+/// pixel to the next.
 struct Target {
     std::string channel;
     float* first;

@@ -1,9 +1,10 @@
-#include "host/atomic_file.h"
-#include "host/error.h"
+#include "reradiant/spectral_image.h"
+
+#include "host/base/atomic_file.h"
 #include "host/film/checked_stream.h"
 #include "host/film/exr_layout.h"
 #include "host/film/spectral_channels.h"
-#include "host/film/spectral_image.h"
+#include "reradiant/error.h"
 
 #include <ImfChannelList.h>
 #include <ImfDoubleAttribute.h>
@@ -16,7 +17,7 @@
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

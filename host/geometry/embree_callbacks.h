@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
-// What Embree calls for shapes that are no meshes: their own arithmetic, in double precision.
+// Embree calls these functions for shapes that are no meshes; they compute in double precision.
 
 namespace reradiant {
 
-/// Embree's own bounds are single precision: the next number outwards, and a little more because
-/// a flat box is tested with rounding too.
+/// Returns the bounds for Embree, which are in single precision: each is rounded outwards, and
+/// widened a little more because a flat box is tested with rounding too.
 inline RTCBounds outer_bounds(const Box& box) {
     const auto widen = [](double value, double sign) {
         return static_cast<float>(value + sign * (std::fabs(value) * 2.5e-7 + 1e-35));

@@ -12,7 +12,7 @@
 #include <map>
 #include <mutex>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -271,7 +271,7 @@ void Geometry::Implementation::occlude(RayRecord& record) const {
     record.t_far = -1.0f;
 }
 
-/// For the rays that `live` lists from `begin` to `end`.
+/// Finds the nearest hits of the rays that `live` lists from `begin` to `end`.
 void Geometry::Implementation::hit(const RaysToHit& rays, std::size_t begin,
                                    std::size_t end) const {
     for (std::size_t i = begin; i < end; ++i)

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/scene/scene.h"
-#include "kernels/shared.h"
+#include "kernels/core/shared.h"
+#include "reradiant/scene.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +25,7 @@ struct RaysToBlock {
 };
 
 struct TraceStatistics {
-    double hit_seconds = 0.0, block_seconds = 0.0; ///< of all threads together
+    double hit_seconds = 0.0, block_seconds = 0.0; ///< summed over all threads
     std::uint64_t blockable = 0;                   ///< rays of RaysToBlock that were active
 };
 
@@ -48,11 +48,12 @@ public:
                    int threads) const;
     /// Sets t_far = -1 for every ray that something blocks in (t_near, t_far).
     void occlude(std::span<RayRecord> rays, int threads) const;
-    /// Both in one go, for the rays whose places are listed, each once; others are not touched.
+    /// Traces both in one go, for the rays whose places are listed, each once; others are not
+    /// touched.
     TraceStatistics trace(const RaysToHit& rays, const RaysToBlock& shadow_rays, int threads) const;
 
     std::size_t triangle_count() const;
-    std::size_t memory_bytes() const; ///< what Embree reports
+    std::size_t memory_bytes() const; ///< as Embree reports it
     const char* library_version() const;
 
 private:

@@ -53,16 +53,16 @@ SurfaceHit flat_hit(const Vec3& position, const Vec3& normal, double u, double v
 } // namespace
 
 double SpherePrimitive::intersect(const Ray& ray) const {
-    const Vec3 from_center = vec3_sub(ray.origin, center);
+    const Vec3 from_centre = vec3_sub(ray.origin, centre);
     const double a = vec3_dot(ray.direction, ray.direction);
-    const double b = vec3_dot(from_center, ray.direction);
+    const double b = vec3_dot(from_centre, ray.direction);
     // The discriminant from the ray's closest approach, and c as a product: neither cancels for
     // a ray far from a small sphere or near the surface of a huge one.
-    const Vec3 closest = vec3_sub(from_center, vec3_scale(ray.direction, b / a));
+    const Vec3 closest = vec3_sub(from_centre, vec3_scale(ray.direction, b / a));
     const double discriminant = a * (square(radius) - vec3_dot(closest, closest));
     if (!(discriminant >= 0.0))
         return -1.0;
-    const double distance = std::sqrt(vec3_dot(from_center, from_center));
+    const double distance = std::sqrt(vec3_dot(from_centre, from_centre));
     const double c = (distance - radius) * (distance + radius);
     const double q = -(b + std::copysign(std::sqrt(discriminant), b));
     const double first = q == 0.0 ? 0.0 : c / q, second = q / a;
@@ -73,8 +73,8 @@ double SpherePrimitive::intersect(const Ray& ray) const {
 }
 
 SurfaceHit SpherePrimitive::describe(const Ray& ray, double t) const {
-    const Vec3 normal = vec3_normalise(vec3_sub(ray.at(t), center));
-    const Vec3 position = vec3_add(center, vec3_scale(normal, radius));
+    const Vec3 normal = vec3_normalise(vec3_sub(ray.at(t), centre));
+    const Vec3 position = vec3_add(centre, vec3_scale(normal, radius));
     return flat_hit(position, normal, 0.0, 0.0, t);
 }
 
@@ -85,12 +85,12 @@ void SpherePrimitive::set_parameters(SurfaceHit& hit) const {
 
 Box SpherePrimitive::bounds() const {
     const Vec3 r = vec3(radius, radius, radius);
-    return {vec3_sub(center, r), vec3_add(center, r)};
+    return {vec3_sub(centre, r), vec3_add(centre, r)};
 }
 
-RectanglePrimitive::RectanglePrimitive(const Vector3& center_in, const Vector3& edge_u_in,
+RectanglePrimitive::RectanglePrimitive(const Vector3& centre_in, const Vector3& edge_u_in,
                                        const Vector3& edge_v_in)
-    : center(to_vec3(center_in)), edge_u(to_vec3(edge_u_in)), edge_v(to_vec3(edge_v_in)) {
+    : centre(to_vec3(centre_in)), edge_u(to_vec3(edge_u_in)), edge_v(to_vec3(edge_v_in)) {
     normal = scaled_to_unit(vec3_cross(scaled_to_unit(edge_u), scaled_to_unit(edge_v)));
     const Vec3 across_u = vec3_cross(edge_v, normal), across_v = vec3_cross(normal, edge_u);
     dual_u = vec3_scale(across_u, 1.0 / vec3_dot(across_u, edge_u));
@@ -98,10 +98,10 @@ RectanglePrimitive::RectanglePrimitive(const Vector3& center_in, const Vector3& 
 }
 
 double RectanglePrimitive::intersect(const Ray& ray) const {
-    const double t = intersect_plane(ray, center, normal);
+    const double t = intersect_plane(ray, centre, normal);
     if (t < 0.0)
         return -1.0;
-    const Vec3 p = vec3_sub(ray.at(t), center);
+    const Vec3 p = vec3_sub(ray.at(t), centre);
     // Rounding must not open a gap between rectangles that share an edge.
     constexpr double HALF = 0.5 + 1e-12;
     return std::fabs(vec3_dot(p, dual_u)) <= HALF && std::fabs(vec3_dot(p, dual_v)) <= HALF ? t
@@ -109,15 +109,15 @@ double RectanglePrimitive::intersect(const Ray& ray) const {
 }
 
 SurfaceHit RectanglePrimitive::describe(const Ray& ray, double t) const {
-    const Vec3 p = vec3_sub(ray.at(t), center);
+    const Vec3 p = vec3_sub(ray.at(t), centre);
     const double u = std::clamp(vec3_dot(p, dual_u), -0.5, 0.5);
     const double v = std::clamp(vec3_dot(p, dual_v), -0.5, 0.5);
     const Vec3 offset = vec3_add(vec3_scale(edge_u, u), vec3_scale(edge_v, v));
-    return flat_hit(vec3_add(center, offset), normal, 0.0, 0.0, t);
+    return flat_hit(vec3_add(centre, offset), normal, 0.0, 0.0, t);
 }
 
 void RectanglePrimitive::set_parameters(SurfaceHit& hit) const {
-    const Vec3 p = vec3_sub(hit.position, center);
+    const Vec3 p = vec3_sub(hit.position, centre);
     hit.u = std::clamp(vec3_dot(p, dual_u) + 0.5, 0.0, 1.0);
     hit.v = std::clamp(vec3_dot(p, dual_v) + 0.5, 0.0, 1.0);
 }
@@ -126,29 +126,29 @@ Box RectanglePrimitive::bounds() const {
     const auto reach = [](double u, double v) { return 0.5 * (std::fabs(u) + std::fabs(v)); };
     const Vec3 r =
         vec3(reach(edge_u.x, edge_v.x), reach(edge_u.y, edge_v.y), reach(edge_u.z, edge_v.z));
-    return {vec3_sub(center, r), vec3_add(center, r)};
+    return {vec3_sub(centre, r), vec3_add(centre, r)};
 }
 
-DiskPrimitive::DiskPrimitive(const Vector3& center_in, const Vector3& normal_in, double radius_in)
-    : center(to_vec3(center_in)), normal(scaled_to_unit(to_vec3(normal_in))),
+DiskPrimitive::DiskPrimitive(const Vector3& centre_in, const Vector3& normal_in, double radius_in)
+    : centre(to_vec3(centre_in)), normal(scaled_to_unit(to_vec3(normal_in))),
       tangent(any_perpendicular(normal)), radius(radius_in) {}
 
 double DiskPrimitive::intersect(const Ray& ray) const {
-    const double t = intersect_plane(ray, center, normal);
+    const double t = intersect_plane(ray, centre, normal);
     if (t < 0.0)
         return -1.0;
-    const Vec3 p = vec3_sub(ray.at(t), center);
+    const Vec3 p = vec3_sub(ray.at(t), centre);
     return vec3_dot(p, p) <= square(radius) ? t : -1.0;
 }
 
 SurfaceHit DiskPrimitive::describe(const Ray& ray, double t) const {
-    const Vec3 p = vec3_sub(ray.at(t), center);
+    const Vec3 p = vec3_sub(ray.at(t), centre);
     const Vec3 in_plane = vec3_sub(p, vec3_scale(normal, vec3_dot(p, normal)));
-    return flat_hit(vec3_add(center, in_plane), normal, 0.0, 0.0, t);
+    return flat_hit(vec3_add(centre, in_plane), normal, 0.0, 0.0, t);
 }
 
 void DiskPrimitive::set_parameters(SurfaceHit& hit) const {
-    const Vec3 p = vec3_sub(hit.position, center);
+    const Vec3 p = vec3_sub(hit.position, centre);
     const double x = vec3_dot(p, tangent), y = vec3_dot(p, vec3_cross(normal, tangent));
     hit.u = std::min(std::hypot(x, y) / radius, 1.0);
     hit.v = azimuth_share(y, x);
@@ -157,7 +157,7 @@ void DiskPrimitive::set_parameters(SurfaceHit& hit) const {
 Box DiskPrimitive::bounds() const {
     const auto reach = [&](double n) { return radius * std::sqrt(std::max(0.0, 1.0 - n * n)); };
     const Vec3 r = vec3(reach(normal.x), reach(normal.y), reach(normal.z));
-    return {vec3_sub(center, r), vec3_add(center, r)};
+    return {vec3_sub(centre, r), vec3_add(centre, r)};
 }
 
 std::array<double, 2> TrianglePrimitive::barycentric(const Ray& ray,

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/scene/scene.h"
-#include "kernels/portable.h"
+#include "kernels/core/portable.h"
+#include "reradiant/scene.h"
 
 #include <array>
 #include <cstdint>
@@ -27,20 +27,20 @@ struct SurfaceHit {
     Vec3 position, normal, shading;
     double u, v;
     double distance;
-    double position_error; ///< of each coordinate, rounding to single precision included
+    double position_error; ///< error of each coordinate, rounding to single precision included
 };
 
 struct Box {
     Vec3 lower, upper;
 };
 
-/// What is not made of triangles is intersected in double precision: then the surface that rays
-/// meet is the one that positions are computed on, and a hit's error is that of rounding its
+/// Shapes that are not made of triangles are intersected in double precision: then the surface that
+/// rays meet is the one that positions are computed on, and a hit's error is that of rounding its
 /// coordinates to single precision. `intersect` returns the nearest t in (t_near, t_far), or -1.
-/// `describe` leaves u and v at zero: `set_parameters` has the angles, for who needs them.
+/// `describe` leaves u and v at zero; `set_parameters` sets them for callers that need them.
 
 struct SpherePrimitive {
-    Vec3 center;
+    Vec3 centre;
     double radius;
 
     double intersect(const Ray& ray) const;
@@ -52,28 +52,28 @@ struct SpherePrimitive {
 
 /// Both sides; the normal is that of cross(edge_u, edge_v).
 struct RectanglePrimitive {
-    RectanglePrimitive(const Vector3& center, const Vector3& edge_u, const Vector3& edge_v);
+    RectanglePrimitive(const Vector3& centre, const Vector3& edge_u, const Vector3& edge_v);
 
     double intersect(const Ray& ray) const;
     SurfaceHit describe(const Ray& ray, double t) const;
     void set_parameters(SurfaceHit& hit) const;
     Box bounds() const;
 
-    Vec3 center, edge_u, edge_v;
+    Vec3 centre, edge_u, edge_v;
     Vec3 normal;         ///< unit
     Vec3 dual_u, dual_v; ///< dual_u . edge_u = 1, dual_u . edge_v = 0
 };
 
 /// Both sides. u = distance from the centre over the radius, v = azimuth over 2 pi.
 struct DiskPrimitive {
-    DiskPrimitive(const Vector3& center, const Vector3& normal, double radius);
+    DiskPrimitive(const Vector3& centre, const Vector3& normal, double radius);
 
     double intersect(const Ray& ray) const;
     SurfaceHit describe(const Ray& ray, double t) const;
     void set_parameters(SurfaceHit& hit) const;
     Box bounds() const;
 
-    Vec3 center, normal, tangent;
+    Vec3 centre, normal, tangent;
     double radius;
 };
 
@@ -81,8 +81,8 @@ struct DiskPrimitive {
 struct TrianglePrimitive {
     std::array<Vec3, 3> corners;
 
-    /// Barycentric coordinates of the second and third corner where the ray meets the triangle,
-    /// pulled into it; `fallback` (Embree's) where the ray lies in its plane.
+    /// Returns the barycentric coordinates of the second and third corner where the ray meets the
+    /// triangle, pulled into it, or `fallback` (Embree's) where the ray lies in its plane.
     std::array<double, 2> barycentric(const Ray& ray, std::array<double, 2> fallback) const;
     SurfaceHit describe(const Ray& ray, std::array<double, 2> barycentric) const;
 };

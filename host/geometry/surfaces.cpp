@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 
@@ -46,16 +46,16 @@ void SurfaceCollector::check_radius(double radius) const {
 }
 
 void SurfaceCollector::add(const SphereShape& sphere) {
-    check_vector(sphere.center, "center");
+    check_vector(sphere.centre, "center");
     check_radius(sphere.radius);
-    surfaces_.spheres.add({to_vec3(sphere.center), sphere.radius}, owner_);
+    surfaces_.spheres.add({to_vec3(sphere.centre), sphere.radius}, owner_);
 }
 
 void SurfaceCollector::add(const RectangleShape& rectangle) {
-    check_vector(rectangle.center, "center");
+    check_vector(rectangle.centre, "center");
     check_vector(rectangle.edge_u, "edge_u");
     check_vector(rectangle.edge_v, "edge_v");
-    const RectanglePrimitive primitive(rectangle.center, rectangle.edge_u, rectangle.edge_v);
+    const RectanglePrimitive primitive(rectangle.centre, rectangle.edge_u, rectangle.edge_v);
     const double check = primitive.normal.x + primitive.dual_u.x + primitive.dual_v.x;
     if (!std::isfinite(check))
         fail("the rectangle has no area", "give two edges that are not parallel");
@@ -63,12 +63,12 @@ void SurfaceCollector::add(const RectangleShape& rectangle) {
 }
 
 void SurfaceCollector::add(const DiskShape& disk) {
-    check_vector(disk.center, "center");
+    check_vector(disk.centre, "center");
     check_vector(disk.normal, "normal");
     check_radius(disk.radius);
     if (disk.normal == Vector3{})
         fail("the normal is zero", "give the direction that the disk faces");
-    surfaces_.disks.add(DiskPrimitive(disk.center, disk.normal, disk.radius), owner_);
+    surfaces_.disks.add(DiskPrimitive(disk.centre, disk.normal, disk.radius), owner_);
 }
 
 void SurfaceCollector::add(const MeshShape& mesh) {
@@ -102,9 +102,9 @@ Surfaces SurfaceCollector::collect() {
         name_ = fmt::format("light {}", i);
         owner_ = {NO_INDEX, NO_INDEX, static_cast<std::uint32_t>(i)};
         if (const auto* rectangle = std::get_if<RectangleLight>(&scene_.lights[i]))
-            add(RectangleShape{rectangle->center, rectangle->edge_u, rectangle->edge_v});
+            add(RectangleShape{rectangle->centre, rectangle->edge_u, rectangle->edge_v});
         else if (const auto* sphere = std::get_if<SphereLight>(&scene_.lights[i]))
-            add(SphereShape{sphere->center, sphere->radius});
+            add(SphereShape{sphere->centre, sphere->radius});
     }
     return std::move(surfaces_);
 }

@@ -1,14 +1,14 @@
 #pragma once
 
 #include "host/geometry/primitives.h"
-#include "host/scene/scene.h"
-#include "kernels/shared.h"
+#include "kernels/core/shared.h"
+#include "reradiant/scene.h"
 
 #include <vector>
 
 namespace reradiant {
 
-/// Whom a surface belongs to.
+/// An `Owner` says which shape, material and light a surface belongs to.
 struct Owner {
     std::uint32_t shape = NO_INDEX, material = NO_INDEX, light = NO_INDEX;
 };

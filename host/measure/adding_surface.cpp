@@ -1,14 +1,14 @@
 #include "host/measure/surface_angles.h"
 #include "host/measure/surface_model.h"
 
-#include "host/error.h"
-#include "host/layers/adding.h"
-#include "host/layers/effective_matrix.h"
-#include "host/layers/interface_walk.h"
-#include "host/layers/oren_nayar_substrate.h"
-#include "kernels/fresnel.h"
-#include "kernels/microfacet.h"
-#include "kernels/oren_nayar.h"
+#include "host/layers/models/effective_matrix.h"
+#include "host/layers/models/oren_nayar_substrate.h"
+#include "host/layers/rough/interface_walk.h"
+#include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/microfacet.h"
+#include "kernels/scatter/oren_nayar.h"
+#include "reradiant/adding.h"
+#include "reradiant/error.h"
 
 #include <numbers>
 
@@ -68,11 +68,10 @@ public:
         OrenNayarWeights last{};
         return through_the_stack(c, [&](int band) {
             const AddingTransport& t = transport(band);
-            if (!like_the_last(band)) {
+            if (!like_the_last(band))
                 last = oren_nayar_hemispherical(sigma_, t.lowest_ior(), c,
                                                 breaks_in_air(stack_at(band)),
                                                 [&](double co) { return t.transmission(co); });
-            }
             return last;
         });
     }
@@ -82,9 +81,8 @@ public:
     std::vector<AddingTransport::Lobe> lobes() const override {
         const int middle = static_cast<int>(transports_.size()) / 2;
         std::vector<AddingTransport::Lobe> all = transport(middle).deeper_lobes();
-        if (transport(middle).has_top_lobe()) {
+        if (transport(middle).has_top_lobe())
             all.push_back({stack_at(middle).front().distribution, stack_at(middle).front().alpha});
-        }
         return all;
     }
     bool has_conductor() const override { return false; }
@@ -105,9 +103,8 @@ private:
             const OrenNayarWeights weights = weights_of(static_cast<int>(o));
             result.row(o) = weights.first * first_.row(o) + weights.rest * rest_.row(o);
         }
-        for (Eigen::Index i = 0; i < result.cols(); ++i) {
+        for (Eigen::Index i = 0; i < result.cols(); ++i)
             result.col(i) *= transport(static_cast<int>(i)).transmission(cos_i);
-        }
         return result;
     }
     double top_lobe(int band, const Vec3& wi, const Vec3& wo) const {

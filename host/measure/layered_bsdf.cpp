@@ -1,7 +1,7 @@
 #include "host/measure/layered_bsdf.h"
 
-#include "host/error.h"
-#include "kernels/layer_stack.h"
+#include "kernels/stack/layer_stack.h"
+#include "reradiant/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +18,10 @@ constexpr double least_cosine = 0.1;
 
 std::unique_ptr<SurfaceModel> surface_of(const LayerStack& stack, const SubstrateValues& substrate,
                                          const WavelengthGrid& bands, Model model) {
-    if (model == Model::Adding) {
+    if (model == Model::Adding)
         return adding_surface(stack, substrate, bands);
-    }
-    if (model == Model::WeidlichWilkie) {
+    if (model == Model::WeidlichWilkie)
         return weidlich_wilkie_surface(stack, substrate, bands);
-    }
     throw_input_error({}, std::string("a closed form was asked of the model ") + model_name(model),
                       "use adding or weidlich-wilkie; the walk has functions of its own");
 }
@@ -57,9 +55,8 @@ LayeredBsdf::Choice LayeredBsdf::choice_at_node(double cos_theta) const {
         lobes = 0.0;
     }
     const double sum = mirror + lobes + cosine;
-    if (!(sum > 0.0)) {
+    if (!(sum > 0.0))
         return {};
-    }
     const double rest = 1.0 - least_cosine;
     const double count = std::max<double>(1.0, static_cast<double>(lobes_.size()));
     return {rest * mirror / sum, least_cosine + rest * cosine / sum, rest * lobes / (sum * count)};
@@ -76,13 +73,11 @@ LayeredBsdf::Choice LayeredBsdf::choice(double cos_theta) const {
 }
 
 Eigen::MatrixXd LayeredBsdf::eval(const Vec3& wi, const Vec3& wo) const {
-    if (!(wi.z > 0.0) || !(wo.z > 0.0)) {
+    if (!(wi.z > 0.0) || !(wo.z > 0.0))
         return Eigen::MatrixXd::Zero(bands_, bands_);
-    }
     Eigen::MatrixXd f = surface_->diffuse(wi, wo);
-    for (int band = 0; band < bands_; ++band) {
+    for (int band = 0; band < bands_; ++band)
         f(band, band) += surface_->specular(band, wi, wo);
-    }
     return f;
 }
 
@@ -97,9 +92,8 @@ Eigen::VectorXd LayeredBsdf::delta(double cos_theta) const {
 
 LayeredBsdf::Sample LayeredBsdf::sample(const Vec3& w, const std::array<double, 3>& random) const {
     const Choice chosen = choice(w.z);
-    if (random[0] < chosen.mirror) {
+    if (random[0] < chosen.mirror)
         return {kernels::vec3(-w.x, -w.y, w.z), chosen.mirror, true};
-    }
     double bound = chosen.mirror;
     for (const AddingTransport::Lobe& lobe : lobes_) {
         bound += chosen.lobe;
@@ -114,9 +108,8 @@ LayeredBsdf::Sample LayeredBsdf::sample(const Vec3& w, const std::array<double, 
 }
 
 double LayeredBsdf::pdf(const Vec3& w, const Vec3& other) const {
-    if (!(w.z > 0.0) || !(other.z > 0.0)) {
+    if (!(w.z > 0.0) || !(other.z > 0.0))
         return 0.0;
-    }
     const Choice chosen = choice(w.z);
     double sum = chosen.cosine * other.z * std::numbers::inv_pi;
     for (const AddingTransport::Lobe& lobe : lobes_) {

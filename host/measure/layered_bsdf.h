@@ -1,8 +1,9 @@
 #pragma once
 
 #include "host/measure/surface_model.h"
-#include "host/scene/scene.h"
+#include "reradiant/scene.h"
 
+#include <Eigen/Core>
 #include <array>
 
 namespace reradiant {
@@ -14,7 +15,8 @@ namespace reradiant {
 ///
 /// Directions are chosen for all bands together: from the rough lobes of interfaces, flakes and a
 /// conductor, from the cosine, or the mirror's, by the mean shares of the light that they carry.
-/// The kernels do the same from tables (kernels/layer_stack.h), whose functions are used here.
+/// The kernels do the same from tables (kernels/stack/layer_stack.h), whose functions are used
+/// here.
 class LayeredBsdf {
 public:
     /// Model Adding or WeidlichWilkie; Input Error for others and for what the model cannot do.

@@ -1,6 +1,6 @@
 #include "host/measure/lobe_quadrature.h"
 
-#include "host/layers/quadrature.h"
+#include "host/layers/stack/quadrature.h"
 #include "host/measure/surface_angles.h"
 
 #include <algorithm>
@@ -34,9 +34,8 @@ double ring(const Vec3& wi, double theta, const std::function<double(const Vec3&
         const Vec3 h = direction_at(std::cos(theta), azimuth_i + reach * rule.nodes[k]);
         const double cos_h = kernels::vec3_dot(wi, h);
         const Vec3 wo = kernels::vec3_sub(kernels::vec3_scale(h, 2.0 * cos_h), wi);
-        if (cos_h > 0.0 && wo.z > 0.0) {
+        if (cos_h > 0.0 && wo.z > 0.0)
             sum += rule.weights[k] * 4.0 * cos_h * wo.z * f(wo);
-        }
     }
     return 2.0 * reach * std::sin(theta) * sum;
 }
@@ -53,9 +52,8 @@ double integrate_about_mirror(const Vec3& wi, const std::function<double(const V
             integrate_sin2(from, to, ring_nodes, [&](double theta) { return ring(wi, theta, f); });
     };
     double high = whole;
-    for (; high > 1e-6; high *= 0.5) {
+    for (; high > 1e-6; high *= 0.5)
         piece(0.5 * high, high);
-    }
     piece(0.0, high);
     // a lobe wider than `whole` (light at grazing angles) goes on beyond it
     for (double low = whole; low < last;) {

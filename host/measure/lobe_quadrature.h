@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/portable.h"
+#include "kernels/core/portable.h"
 
 #include <functional>
 

@@ -1,14 +1,17 @@
-#include "host/measure/measure.h"
+#include "reradiant/measure.h"
+#include "host/measure/measure_substrate.h"
+#include "host/scene/model/substrate.h"
 
 #include "host/measure/measure_memory.h"
 
-#include "host/error.h"
 #include "host/measure/surface_angles.h"
 #include "host/measure/surface_model.h"
 #include "host/measure/walk_measurement.h"
-#include "host/scene/model_choice.h"
+#include "host/scene/model/model_choice.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <Eigen/Core>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,15 +24,12 @@ namespace {
 void check_request(const MeasureRequest& request) {
     const auto check = [](const std::vector<double>& angles, const char* name, double from,
                           double to, const char* remedy) {
-        if (angles.empty()) {
+        if (angles.empty())
             throw_input_error({}, fmt::format("{} holds no angle", name), remedy);
-        }
-        for (const double angle : angles) {
-            if (!(angle >= from) || !(angle < to)) {
+        for (const double angle : angles)
+            if (!(angle >= from) || !(angle < to))
                 throw_input_error({}, fmt::format("{} of {} degrees is out of range", name, angle),
                                   remedy);
-            }
-        }
     };
     const char* const polar = "angles from the normal lie between 0 and below 90 degrees";
     check(request.theta_i_deg, "theta-i", 0.0, 90.0, polar);
@@ -80,18 +80,15 @@ private:
     void diffuse(const MeasureRow& row, const Eigen::MatrixXd& values) {
         const Eigen::MatrixXd& coupling = surface_.coupling();
         for (int i = 0; i < bands_; ++i) {
-            for (int o = 0; o < bands_; ++o) {
-                if (o == i || (fluorescent_ && (o > i || coupling(o, i) != 0.0))) {
+            for (int o = 0; o < bands_; ++o)
+                if (o == i || (fluorescent_ && (o > i || coupling(o, i) != 0.0)))
                     add(row, i, o, values(o, i), MeasuredPart::Diffuse);
-                }
-            }
         }
     }
     template <typename Value>
     void specular(const MeasureRow& row, const Value& value) {
-        for (int band = 0; band < bands_; ++band) {
+        for (int band = 0; band < bands_; ++band)
             add(row, band, band, value(band), MeasuredPart::Specular);
-        }
     }
 
     Measurement& measurement_;
@@ -129,12 +126,10 @@ void add_notes(Measurement& measurement, const SurfaceModel& surface,
 } // namespace
 
 WavelengthGrid measured_bands(const Material& material, const MeasureRequest& request) {
-    if (request.bands) {
+    if (request.bands)
         return *request.bands;
-    }
-    if (const auto own = material.substrate.own_grid()) {
+    if (const auto own = material.substrate.own_grid())
         return *own;
-    }
     if (material.substrate.matrix) {
         throw_input_error({},
                           "the matrix's emission and excitation wavelengths share no common grid",
@@ -146,9 +141,8 @@ WavelengthGrid measured_bands(const Material& material, const MeasureRequest& re
 Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request) {
     check_request(request);
-    if (request.model == Model::Walk) {
+    if (request.model == Model::Walk)
         return measure_by_walk(stack, substrate, bands, request);
-    }
     Measurement measurement;
     measurement.bands = bands;
     measurement.hemispherical = request.hemispherical;
@@ -164,11 +158,9 @@ Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& su
             writer.hemispherical(theta_i);
             continue;
         }
-        for (const double theta_o : request.theta_o_deg) {
-            for (const double phi : request.phi_deg) {
+        for (const double theta_o : request.theta_o_deg)
+            for (const double phi : request.phi_deg)
                 writer.directional(theta_i, theta_o, phi);
-            }
-        }
     }
     add_notes(measurement, *surface, request);
     return measurement;
@@ -182,16 +174,14 @@ Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_ba
 SubstrateValues measured_substrate(const Substrate& substrate, const WavelengthGrid& bands) {
     SubstrateValues measured;
     if (substrate.type == SubstrateType::Conductor) {
-        for (const double nm : bands.centres_nm()) {
+        for (const double nm : bands.centres_nm())
             measured.conductor.push_back(conductor_at(substrate.conductor, nm));
-        }
         return measured;
     }
     measured.sigma = substrate.type == SubstrateType::OrenNayar ? substrate.sigma : 0.0;
-    measured.matrix = substrate.fluorescence_on(bands);
-    for (int band = 0; band < bands.count; ++band) {
+    measured.matrix = fluorescence_of(substrate, bands);
+    for (int band = 0; band < bands.count; ++band)
         measured.matrix(band, band) += substrate.reflectance(bands.centre_nm(band));
-    }
     return measured;
 }
 
@@ -204,9 +194,8 @@ Measurement measure_material(const Material& material, const MeasureRequest& req
     check_measure_memory(bands, material.substrate.is_fluorescent(), request);
     Measurement measurement = measure_substrate(
         material.stack, measured_substrate(material.substrate, bands), bands, resolved);
-    if (!choice.reason.empty()) {
+    if (!choice.reason.empty())
         measurement.notes.insert(measurement.notes.begin(), choice.reason);
-    }
     return measurement;
 }
 

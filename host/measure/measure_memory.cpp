@@ -1,6 +1,6 @@
 #include "host/measure/measure_memory.h"
 
-#include "host/memory_limit.h"
+#include "host/base/memory_limit.h"
 
 namespace reradiant {
 
@@ -8,7 +8,7 @@ void check_measure_memory(const WavelengthGrid& bands, bool fluorescent,
                           const MeasureRequest& request) {
     // The substrate's matrix, the stack's answer to it, and what solving takes.
     constexpr double matrices = 6.0;
-    // Of text, numbers of 12 digits.
+    // A row takes its numbers and their text, with 12 digits a number.
     constexpr double row_bytes = sizeof(MeasureRow) + 128.0;
     const auto count = static_cast<double>(bands.count);
     const auto directions =

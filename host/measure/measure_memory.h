@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/measure/measure.h"
+#include "reradiant/measure.h"
 
 namespace reradiant {
 

@@ -1,5 +1,6 @@
-#include "host/atomic_file.h"
-#include "host/measure/measure.h"
+#include "reradiant/measure.h"
+
+#include "host/base/atomic_file.h"
 
 #include <fmt/format.h>
 
@@ -12,18 +13,16 @@ void write_measurement(const std::filesystem::path& file, const Measurement& mea
                                    measurement.hemispherical
                                        ? "directional-hemispherical reflectance, per-band"
                                        : "bispectral BRDF in 1/sr without the cosine, per-band");
-    for (const std::string& note : measurement.notes) {
+    for (const std::string& note : measurement.notes)
         text += "# " + note + "\n";
-    }
     text += "theta_i_deg,theta_o_deg,phi_deg,lambda_i_nm,lambda_o_nm,value,stderr,part\n";
     auto out = std::back_inserter(text);
     for (const MeasureRow& row : measurement.rows) {
         fmt::format_to(out, "{:.12g},", row.theta_i_deg);
-        if (measurement.hemispherical) {
+        if (measurement.hemispherical)
             fmt::format_to(out, ",,");
-        } else {
+        else
             fmt::format_to(out, "{:.12g},{:.12g},", row.theta_o_deg, row.phi_deg);
-        }
         fmt::format_to(out, "{:.12g},{:.12g},{:.12g},{:.12g},{}\n", row.lambda_i_nm,
                        row.lambda_o_nm, row.value, row.standard_error,
                        row.part == MeasuredPart::Diffuse ? "diffuse" : "specular");

@@ -1,6 +1,6 @@
 #include "host/measure/surface_angles.h"
 
-#include "host/layers/quadrature.h"
+#include "host/layers/stack/quadrature.h"
 
 #include <cmath>
 
@@ -8,17 +8,15 @@ namespace reradiant {
 
 std::vector<StackValues> values_at(const LayerStack& stack, const WavelengthGrid& bands) {
     std::vector<StackValues> values;
-    for (const double nm : bands.centres_nm()) {
+    for (const double nm : bands.centres_nm())
         values.push_back(stack_at(stack, nm));
-    }
     return values;
 }
 
 std::vector<double> breaks_in_air(const StackValues& stack) {
     std::vector<double> inner;
-    for (const LayerValues& layer : stack) {
+    for (const LayerValues& layer : stack)
         inner.push_back(std::sqrt(std::fabs((layer.ior - 1.0) * (layer.ior + 1.0))));
-    }
     return breaks_between_0_and_1(inner);
 }
 

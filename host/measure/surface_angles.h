@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/layers/stack.h"
-#include "host/spectral/grid.h"
-#include "kernels/portable.h"
+#include "kernels/core/portable.h"
+#include "reradiant/layer_stack.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "host/layers/adding.h"
-#include "host/layers/substrate_values.h"
-#include "host/spectral/grid.h"
-#include "kernels/portable.h"
+#include "host/layers/stack/substrate_values.h"
+#include "kernels/core/portable.h"
+#include "reradiant/adding.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <Eigen/Core>
 
@@ -13,17 +13,18 @@
 
 namespace reradiant {
 
-/// What a closed model says of a stack over a substrate, at the band centres. No cosine in
-/// directional values. `diffuse` reached the substrate, of whatever type; `specular` never did.
+/// A `SurfaceModel` gives what a closed model says of a stack over a substrate, at the band
+/// centres. Directional values are without the cosine. `diffuse` is light that reached the
+/// substrate, of whatever type; `specular` is light that never did.
 class SurfaceModel {
 public:
     virtual ~SurfaceModel() = default;
 
     /// (bands, bands), rows = emission: zero where no light can go from one band to another.
     virtual const Eigen::MatrixXd& coupling() const = 0;
-    /// Without deltas, per band: (bands, bands), rows = emission, 1/sr.
+    /// Returns the diffuse part without deltas, per band: (bands, bands), rows = emission, 1/sr.
     virtual Eigen::MatrixXd diffuse(const kernels::Vec3& wi, const kernels::Vec3& wo) const = 0;
-    /// Without deltas, 1/sr.
+    /// Returns the specular part without deltas, 1/sr.
     virtual double specular(int band, const kernels::Vec3& wi, const kernels::Vec3& wo) const = 0;
     /// Weights of the mirror deltas, unit 1: of the stack, and of a smooth conductor under it.
     virtual double specular_delta(int band, double cos_theta) const = 0;

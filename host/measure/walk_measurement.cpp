@@ -1,9 +1,10 @@
 #include "host/measure/walk_measurement.h"
 
-#include "host/layers/walk_estimate.h"
+#include "host/layers/walk/walk_estimate.h"
 #include "host/measure/surface_angles.h"
+#include "host/measure/walk_continuation.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,11 +26,9 @@ struct Detector {
 
 std::vector<Detector> detectors_of(const MeasureRequest& request) {
     std::vector<Detector> detectors;
-    for (const double theta : request.theta_o_deg) {
-        for (const double phi : request.phi_deg) {
+    for (const double theta : request.theta_o_deg)
+        for (const double phi : request.phi_deg)
             detectors.push_back({theta, phi, direction_at(std::cos(radians(theta)), radians(phi))});
-        }
-    }
     return detectors;
 }
 
@@ -73,37 +72,38 @@ void add_rows(Measurement& measurement, const Pairs& possible, const MeasureRow&
             }
         }
     }
-    for (int band = 0; band < bands; ++band) {
+    for (int band = 0; band < bands; ++band)
         row(band, band, mean.specular(band), error.specular(band), MeasuredPart::Specular);
-    }
 }
 
-/// What there is of every theta_i, in order, for a request that wants to hear of it.
+/// A `WalkJournal` keeps the state of the walk of every theta_i, in order, and tells it to a
+/// request that wants to hear of it.
 class WalkJournal {
 public:
-    explicit WalkJournal(const MeasureRequest& request) : request_(request) {}
+    explicit WalkJournal(const MeasureRequest& request)
+        : request_(request), continuation_(request.walks ? *request.walks : WalkContinuation{}) {}
 
     WalkEstimate estimate(const LayerWalk& walk, const kernels::Vec3& wi,
                           std::span<const kernels::Vec3> wo, long samples) {
         const std::size_t index = told_.size();
-        const bool begun = index < request_.walked.size();
-        told_.push_back(begun ? request_.walked[index] : WalkState{});
+        const bool begun = index < continuation_.states.size();
+        told_.push_back(begun ? continuation_.states[index] : WalkState{});
         const WalkState from = told_.back();
         const WalkPause pause = [&](bool is_done, const std::function<WalkState()>& state) {
-            if (is_done) {
+            if (is_done)
                 told_.back() = state();
-            }
-            request_.pause([&] {
+            continuation_.pause([&] {
                 told_.back() = state();
                 return told_;
             });
         };
         return estimate_walk(walk, wi, wo, static_cast<std::uint64_t>(samples), request_.seed,
-                             request_.stop, from, request_.pause ? pause : WalkPause{});
+                             request_.stop, from, continuation_.pause ? pause : WalkPause{});
     }
 
 private:
     const MeasureRequest& request_;
+    WalkContinuation continuation_;
     std::vector<WalkState> told_;
 };
 
@@ -139,9 +139,8 @@ Measurement measure_by_walk(const LayerStack& stack, const SubstrateValues& subs
     const std::vector<Detector> detectors =
         request.hemispherical ? std::vector<Detector>{} : detectors_of(request);
     std::vector<kernels::Vec3> wo;
-    for (const Detector& detector : detectors) {
+    for (const Detector& detector : detectors)
         wo.push_back(detector.w);
-    }
     const long samples = request.samples > 0 ? request.samples : default_walk_samples;
     const Pairs possible = possible_pairs(substrate.matrix, bands.count, !stack.layers.empty());
     double delta = 0.0, lost = 0.0;
@@ -151,9 +150,8 @@ Measurement measure_by_walk(const LayerStack& stack, const SubstrateValues& subs
             journal.estimate(walk, direction_at(std::cos(radians(theta_i)), 0.0), wo, samples);
         const WalkTally &mean = estimate.mean, &error = estimate.standard_error;
         MeasureRow angles{theta_i, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
-        if (request.hemispherical) {
+        if (request.hemispherical)
             add_rows(measurement, possible, angles, mean.hemispherical, error.hemispherical);
-        }
         for (std::size_t k = 0; k < detectors.size(); ++k) {
             angles.theta_o_deg = detectors[k].theta_deg;
             angles.phi_deg = detectors[k].phi_deg;

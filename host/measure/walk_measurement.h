@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/layers/walk.h"
-#include "host/measure/measure.h"
+#include "host/layers/walk/walk.h"
+#include "reradiant/measure.h"
 
 namespace reradiant {
 

@@ -1,7 +1,7 @@
 #include "host/measure/walk_states.h"
 
-#include "host/error.h"
-#include "host/json_numbers.h"
+#include "host/base/json_numbers.h"
+#include "reradiant/error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/layers/walk_estimate.h"
+#include "host/layers/walk/walk_estimate.h"
 
 #include <nlohmann/json.hpp>
 
@@ -10,8 +10,8 @@ namespace reradiant {
 
 /// States of walks as a list of [blocks, walks, numbers], for checkpoints.
 nlohmann::json walk_states_json(const std::vector<WalkState>& states);
-/// Input Error for what is none or holds numbers that are not finite. Whether a state is of the
-/// walk that is to go on, estimate_walk sees.
+/// Reads such a list. Input Error for other JSON and for numbers that are not finite. estimate_walk
+/// checks that a state is of the walk that is to go on.
 std::vector<WalkState> walk_states_from(const nlohmann::json& list);
 
 } // namespace reradiant

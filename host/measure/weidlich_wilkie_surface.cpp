@@ -1,10 +1,11 @@
-#include "host/layers/quadrature.h"
-#include "host/layers/stack_check.h"
-#include "host/layers/weidlich_wilkie.h"
-#include "host/layers/weidlich_wilkie_residual.h"
+#include "host/measure/surface_model.h"
+
+#include "host/layers/models/weidlich_wilkie.h"
+#include "host/layers/models/weidlich_wilkie_residual.h"
+#include "host/layers/stack/quadrature.h"
+#include "host/layers/stack/stack_check.h"
 #include "host/measure/lobe_quadrature.h"
 #include "host/measure/surface_angles.h"
-#include "host/measure/surface_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,20 +41,17 @@ public:
         for (std::size_t k = 0; k < stacks.size(); ++k) {
             BandValues& values = bands_.emplace_back();
             values.stack = std::move(stacks[k]);
-            if (!substrate.conductor.empty()) {
+            if (!substrate.conductor.empty())
                 values.conductor = substrate.conductor[k];
-            }
             check_stack(values.stack);
-            if (values.conductor) {
+            if (values.conductor)
                 check_conductor(*values.conductor);
-            }
             const bool same = k > 0 && values == bands_[k - 1];
             residuals_.push_back(same ? residuals_.back()
                                       : WeidlichWilkieResidual(values.stack, values.conductor));
         }
-        if (has_conductor()) {
+        if (has_conductor())
             matrix_ = Eigen::MatrixXd::Identity(bands.count, bands.count);
-        }
     }
 
     const Eigen::MatrixXd& coupling() const override { return matrix_; }
@@ -127,20 +125,17 @@ std::vector<AddingTransport::Lobe> WeidlichWilkieSurface::lobes() const {
     std::vector<AddingTransport::Lobe> all;
     double ior = 1.0;
     const auto add = [&](const auto& part) {
-        if (part.alpha > 0.0) {
+        if (part.alpha > 0.0)
             all.push_back({part.distribution, std::min(1.0, ior * part.alpha)});
-        }
     };
     for (const LayerValues& layer : middle.stack) {
         add(layer);
         ior = layer.ior;
-        if (layer.flake_coverage > 0.0) {
+        if (layer.flake_coverage > 0.0)
             add(layer.flakes);
-        }
     }
-    if (middle.conductor) {
+    if (middle.conductor)
         add(*middle.conductor);
-    }
     return all;
 }
 
@@ -183,9 +178,8 @@ std::vector<double> breaks_of_all(const std::vector<BandValues>& bands, double c
         breaks.insert(breaks.end(), own.begin(), own.end());
     }
     breaks = breaks_between_0_and_1(breaks);
-    if (breaks.size() > 8) {
+    if (breaks.size() > 8)
         breaks = {0.25, 0.5, 0.75};
-    }
     breaks.push_back(cos_i);
     return breaks_between_0_and_1(breaks);
 }
@@ -194,9 +188,8 @@ Eigen::MatrixXd WeidlichWilkieSurface::hemispherical_matrix(double c) const {
     const Vec3 wi = direction_at(c, 0.0);
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(bands(), bands());
     // both ways depend on the half vector of rough interfaces, so they are integrated together
-    for (const WeightedDirection& wo : half_hemisphere(breaks_of_all(bands_, c))) {
+    for (const WeightedDirection& wo : half_hemisphere(breaks_of_all(bands_, c)))
         result += wo.weight * diffuse(wi, wo.direction);
-    }
     return result;
 }
 
@@ -213,9 +206,8 @@ double WeidlichWilkieSurface::hemispherical_conductor(int band, double c) const 
 }
 
 Eigen::MatrixXd WeidlichWilkieSurface::hemispherical_diffuse(double c) const {
-    if (!has_conductor()) {
+    if (!has_conductor())
         return hemispherical_matrix(c);
-    }
     Eigen::VectorXd diagonal(bands());
     for (int band = 0; band < bands(); ++band) {
         const bool same = band > 0 && at(band) == at(band - 1);

@@ -1,6 +1,6 @@
 #include "host/report/colour_map.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "host/report/data_uri.h"
 
-#include "host/error.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdint>
 #include <fstream>

@@ -2,7 +2,7 @@
 #include "host/report/plot_frame.h"
 #include "host/report/svg.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -38,7 +38,7 @@ Axis cell_axis(const std::vector<double>& centres, const char* name) {
     return make_axis(centres.front() - half, centres.back() + half, false, true);
 }
 
-/// What the ends of the colour bar mean.
+/// A `ColourScale` holds the values at the two ends of the colour bar.
 struct ColourScale {
     double low = 0.0, high = 1.0;
 

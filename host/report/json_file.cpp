@@ -1,6 +1,6 @@
 #include "host/report/json_file.h"
 
-#include "host/atomic_file.h"
+#include "host/base/atomic_file.h"
 
 namespace reradiant {
 

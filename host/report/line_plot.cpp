@@ -1,7 +1,7 @@
 #include "host/report/plot_frame.h"
 #include "host/report/svg.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

@@ -23,7 +23,7 @@ Axis make_axis(double low, double high, bool is_log, bool exact);
 /// A number as plots print it: few digits, powers of ten as such.
 std::string number_label(double value);
 
-/// Where on the page a plot's data lie, in pixels; y grows downwards.
+/// A `Frame` says where on the page a plot's data lie, in pixels; y grows downwards.
 struct Frame {
     double left = 78, top = 40, width = 480, height = 320;
     Axis x, y;

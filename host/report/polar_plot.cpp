@@ -2,7 +2,7 @@
 
 #include "host/report/plot_frame.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 #include <cmath>

@@ -6,9 +6,9 @@
 
 namespace reradiant {
 
-/// How far work is and how long it will take, on standard error unless somebody asked for quiet. On
-/// a terminal a bar; elsewhere, so that logs and pipes hold no control characters, one line early
-/// in work that takes long.
+/// A `ProgressBar` shows how far work is and how long it will take, on standard error unless
+/// somebody asked for quiet. On a terminal it is a bar; elsewhere, so that logs and pipes hold no
+/// control characters, it is one line early in work that takes long.
 class ProgressBar {
 public:
     explicit ProgressBar(bool quiet);
@@ -16,13 +16,14 @@ public:
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
 
-    /// Share done, 0 to 1, with a short note behind the bar. Redraws at most ten times a second.
-    /// What is left is estimated from the first share that was told: what an earlier run did took
-    /// no time now.
+    /// Shows the share done, 0 to 1, with a short note behind the bar, and redraws at most ten
+    /// times a second. The time left is estimated from the first share that was told, since what an
+    /// earlier run did took no time now.
     void update(double share, const std::string& note);
-    /// For work whose end nobody knows: the note, and the seconds since the bar was made.
+    /// Shows the note and the seconds since the bar was made, for work whose end nobody knows.
     void update(const std::string& note);
-    /// Whether an update would show anything now, for shares that are dear to find out.
+    /// Returns true when an update would show anything now, for shares that are expensive to find
+    /// out.
     bool is_due() const;
 
 private:
@@ -43,8 +44,8 @@ std::string progress_line(double share, const std::string& note, int width = 30)
 /// "12 s", "3 min", "1.2 h"
 std::string duration_text(double seconds);
 
-/// Seconds to the end of work that came from one share to another in so many; nothing while that
-/// says little: before two seconds, or a hundredth of the work.
+/// Returns the seconds to the end of work that went from one share to another in `seconds`, or
+/// nothing while that says little: before two seconds, or a hundredth of the work.
 std::optional<double> seconds_left(double seconds, double from_share, double share);
 
 } // namespace reradiant

@@ -1,7 +1,8 @@
 #include "host/check/check.h"
-#include "host/error.h"
-#include "host/paths.h"
-#include "tests/full_run.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
+#include "tests/support/first_device.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -13,15 +14,9 @@
 namespace reradiant {
 namespace {
 
-namespace fs = std::filesystem;
+using test::device;
 
-const Device& device() {
-    static const Device opened = [] {
-        prepare_opencl(0);
-        return Device("");
-    }();
-    return opened;
-}
+namespace fs = std::filesystem;
 
 CheckReport checked(const std::string& only, std::size_t samples = 2000, bool in_double = false) {
     CheckOptions options;
@@ -68,7 +63,7 @@ private:
 constexpr const char* fresnel_sum = "r = REAL(0.5) * (s * s + p * p);";
 
 TEST(Check, EveryFunctionPassesOnThisDevice) {
-    const CheckReport report = checked("", is_full_run() ? 1000000 : 2000);
+    const CheckReport report = checked("", test::is_full_run() ? 1000000 : 2000);
     EXPECT_TRUE(report.passed()) << failures(report);
     EXPECT_GT(report.functions.size(), 60U);
     for (const FunctionReport& function : report.functions) {
@@ -78,20 +73,22 @@ TEST(Check, EveryFunctionPassesOnThisDevice) {
 }
 
 TEST(Check, FindsAFormulaThatIsOffByOnePartInAThousand) {
-    const ChangedKernel changed("kernels/fresnel.h", fresnel_sum,
+    const ChangedKernel changed("kernels/scatter/fresnel.h", fresnel_sum,
                                 "r = REAL(0.5005) * (s * s + p * p);");
     EXPECT_FALSE(checked("fresnel_dielectric").passed());
 }
 
 TEST(Check, FindsAnUnstableForm) {
     // case 8: 1 - z^2 instead of x^2 + y^2
-    const ChangedKernel changed("kernels/microfacet.h", "real sin2 = h.x * h.x + h.y * h.y;",
+    const ChangedKernel changed("kernels/scatter/microfacet.h",
+                                "real sin2 = h.x * h.x + h.y * h.y;",
                                 "real sin2 = REAL(1.0) - h.z * h.z;");
     EXPECT_FALSE(checked("microfacet_d ggx").passed());
 }
 
 TEST(Check, Case44FindsANanWhereTheTwinIsFinite) {
-    const ChangedKernel changed("kernels/fresnel.h", "return r < REAL(1.0) ? r : REAL(1.0);",
+    const ChangedKernel changed("kernels/scatter/fresnel.h",
+                                "return r < REAL(1.0) ? r : REAL(1.0);",
                                 "return (g2 - g2) / (g2 - g2);");
     const CheckReport report = checked("fresnel_dielectric");
     ASSERT_FALSE(report.passed());
@@ -107,10 +104,10 @@ TEST(Check, RegressionFileNoticesWhatMoved) {
     compare_results(saved, same);
     EXPECT_TRUE(same.passed()) << failures(same);
     {
-        const ChangedKernel changed("kernels/fresnel.h", fresnel_sum,
+        const ChangedKernel changed("kernels/scatter/fresnel.h", fresnel_sum,
                                     "r = REAL(0.5005) * (s * s + p * p);");
         CheckReport moved = checked("fresnel_dielectric");
-        moved.functions.front().failures.clear(); // what it says without the file
+        moved.functions.front().failures.clear(); // which do not come from the saved file
         compare_results(saved, moved);
         EXPECT_FALSE(moved.passed());
     }
@@ -122,7 +119,7 @@ TEST(Check, RegressionFileNoticesWhatMoved) {
 
 TEST(Check, RegressionFileMustBeOne) {
     EXPECT_THROW(read_saved_results("/nowhere.json"), Error);
-    EXPECT_THROW(read_saved_results(data_directory() / "kernels/random.h"), Error);
+    EXPECT_THROW(read_saved_results(data_directory() / "kernels/core/random.h"), Error);
 }
 
 TEST(Check, DoubleKernelsAgreeWithTheTwinToTheirOwnPrecision) {

@@ -1,7 +1,7 @@
 #include "host/check/tracked.h"
 
 #include "host/check/checked_function.h"
-#include "kernels/microfacet.h"
+#include "kernels/scatter/microfacet.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,10 @@
-// What a device refuses, and that the cause is named before or after it does.
+// These tests are of what a device refuses, and show that the cause is named before or after it
+// does.
 #include "host/device/buffer.h"
+#include "host/device/opencl_device.h"
 #include "host/device/program.h"
-#include "host/error.h"
+#include "reradiant/error.h"
+#include "tests/support/first_device.h"
 
 #include <gtest/gtest.h>
 
@@ -10,13 +13,7 @@
 namespace reradiant {
 namespace {
 
-const Device& device() {
-    static const Device opened = [] {
-        prepare_opencl(0);
-        return Device("");
-    }();
-    return opened;
-}
+using test::device;
 
 template <typename Action>
 std::string error_of(Action action) {
@@ -88,8 +85,8 @@ TEST(DeviceLimits, Case42RefusedLaunchesNameTheCause) {
          {std::pair<std::size_t, std::size_t>{100, 64}, {1U << 20U, 1U << 20U}}) {
         const std::string text = error_of([&, g = global, l = local] {
             opencl_checked("a launch", [&] {
-                device().queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(g),
-                                                      cl::NDRange(l));
+                device().opencl().queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(g),
+                                                             cl::NDRange(l));
             });
         });
         EXPECT_NE(text.find("a launch failed"), std::string::npos) << text;

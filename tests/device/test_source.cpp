@@ -1,6 +1,6 @@
 #include "host/device/source.h"
-#include "host/error.h"
-#include "host/paths.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace {
 TEST(KernelSource, HeadersStandInPlaceOnceWithTheirNames) {
     const std::string source = kernel_source(data_directory(), "kernels/gather.cl", {{"LOBES", 3}});
     EXPECT_EQ(source.rfind("#define LOBES 3\n", 0), 0u);
-    const std::string marker = "#line 1 \"kernels/portable.h\"";
+    const std::string marker = "#line 1 \"kernels/core/portable.h\"";
     const std::size_t first = source.find(marker);
     ASSERT_NE(first, std::string::npos);
     EXPECT_EQ(source.find(marker, first + 1), std::string::npos);

@@ -90,7 +90,7 @@ def numbers_agree(shown, printed, behind):
 
 
 def line_agrees(shown, printed):
-    """Whether a line is as shown, but for `...`, the last digits of numbers and the width of gaps."""
+    """Returns whether a line is as shown, but for `...`, the last digits of numbers and the width of gaps."""
     shown, printed = " ".join(shown.split()), " ".join(printed.split())
     tokens = list(re.finditer(rf"\.\.\.|{NUMBER.pattern}|.", shown))
     pattern = "".join(".*" if t[0] == "..." else f"({NUMBER.pattern})" if NUMBER.fullmatch(t[0])
@@ -102,7 +102,7 @@ def line_agrees(shown, printed):
 
 
 def agrees(shown, printed):
-    """Whether lines are as shown; a line `...` stands for any number of them."""
+    """Returns whether lines are as shown; a line `...` stands for any number of them."""
     if not shown:
         return not printed
     if shown[0].strip() == "...":
@@ -142,7 +142,7 @@ def environment_of(folder):
 
 
 def outputs_of(blocks, folder):
-    """What each block printed, up to the one that failed, and the exit status."""
+    """Returns the lines that each block printed, up to the one that failed, and the exit status."""
     run = subprocess.run(["bash"], input=script_of(blocks), cwd=folder, env=environment_of(folder),
                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     parts = re.split(r"^@@ block \d+ @@\n", run.stdout, flags=re.MULTILINE)

@@ -1,4 +1,4 @@
-"""What counts as the same output, and what a document that is wrong gets told."""
+"""Tests of what counts as the same output, and of what a document that is wrong gets told."""
 
 import os
 import pathlib

@@ -32,7 +32,7 @@ def device_lost(bench):
 
 
 def device_lost_after_checkpoint(bench):
-    """What the device takes with it is what came after the last checkpoint."""
+    """A lost device costs no more than the work after the last checkpoint."""
     folder = bench.folder()
     bench.run_well(folder, RENDER)
     (folder / "out.exr").unlink()

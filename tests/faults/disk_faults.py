@@ -31,7 +31,7 @@ def contents(folder, names):
 
 
 def good_contents(bench, folder, command, names):
-    """What the command writes on a good day; its files are removed again."""
+    """Returns what the command writes on a good day, and removes the files again."""
     bench.run_well(folder, command)
     good = contents(folder, names)
     for name in names:

@@ -1,4 +1,5 @@
-"""What the faults share: running the program, judging what it left behind, rows of the table."""
+"""The code that the tests of faults share: running the program, judging what it left behind, rows of
+the table."""
 
 import dataclasses
 import os
@@ -144,7 +145,7 @@ def expect(result, codes, arguments):
 
 
 def leftovers(folder):
-    """Temporary files that a run left (host/atomic_file.h names them)."""
+    """Temporary files that a run left (host/base/atomic_file.h names them)."""
     return [file.name for file in folder.rglob(".*.partial*")]
 
 

@@ -46,7 +46,7 @@ def kill_nine(bench):
         if not checkpoint.exists():
             lost = max(lost, killed - started)
             continue
-        # Of what this process did: all where it was killed before its own first checkpoint.
+        # The work of this process alone counts: all of it is lost before its own first checkpoint.
         lost = max(lost, killed - max(started, checkpoint.stat().st_mtime))
         (folder / "copy.exr.checkpoint").write_bytes(checkpoint.read_bytes())
         result = bench.run(folder, RESUMED)

@@ -1,4 +1,4 @@
-#include "host/spectral/colour.h"
+#include "reradiant/colour.h"
 #include "tests/film/film_fixtures.h"
 
 #include <png.h>

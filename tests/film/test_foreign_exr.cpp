@@ -9,7 +9,7 @@
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace reradiant {
 
@@ -67,7 +67,7 @@ TEST(ForeignExr, ImageOfAnotherProgramIsRead) {
 }
 
 TEST(ForeignExr, Case54HalfFloatsAreReadAsTheyAre) {
-    // Written by others, they hold what they hold; this program writes none.
+    // Half floats in files of other programs are read as they are; this program writes none.
     const TemporaryFolder folder;
     write_foreign(folder / "a.exr", {"S0.400,000000nm"}, Imf::HALF, small_window);
     EXPECT_EQ(read_spectral_exr(folder / "a.exr").values, std::vector<float>(12, grey));
@@ -77,7 +77,7 @@ TEST(ForeignExr, Case54HalfFloatsAreReadAsTheyAre) {
 }
 
 TEST(ForeignExr, BandsNamedWithThreeDecimalsAreEvenWithinTheirRounding) {
-    // As pbrt-v4 names sixteen bands from 360 to 830 nm.
+    // The names are those that pbrt-v4 gives sixteen bands from 360 to 830 nm.
     std::vector<std::string> names;
     for (int band = 0; band < 16; ++band) {
         std::string name = fmt::format("S0.{:.3f}nm", 374.6875 + 29.375 * band);
@@ -114,7 +114,7 @@ TEST(ForeignExr, Case69ImagesOfDifferentDisplayWindowsAreNotCompared) {
                         b = read_spectral_exr(folder / "b.exr");
     const std::string message = error_message(2, [&] { compare_images(a, b); });
     EXPECT_NE(message.find("display windows differ"), std::string::npos) << message;
-    // The same data, cropped out of a larger film.
+    // The third file has the data of the first, cropped out of a larger film.
     write_foreign(folder / "c.exr", {"S0.400nm"}, Imf::FLOAT, small_window,
                   {Imath::V2i(0), Imath::V2i(9, 9)});
     error_message(2, [&] { compare_images(a, read_spectral_exr(folder / "c.exr")); });

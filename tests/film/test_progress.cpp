@@ -17,7 +17,8 @@ TEST(Progress, LineShowsTheShareAndSurvivesNonsense) {
 TEST(Progress, TimeLeftIsOfTheWorkThatThisRunDoes) {
     // A quarter in ten seconds: three quarters take thirty.
     EXPECT_NEAR(*seconds_left(10.0, 0.0, 0.25), 30.0, 1e-12);
-    // What an earlier run did took no time: from 0.5 to 0.75 in ten, the rest in ten more.
+    // The share that an earlier run did took no time here: from 0.5 to 0.75 in ten seconds, the
+    // rest in ten more.
     EXPECT_NEAR(*seconds_left(10.0, 0.5, 0.75), 10.0, 1e-12);
     EXPECT_FALSE(seconds_left(1.0, 0.0, 0.5)) << "too early";
     EXPECT_FALSE(seconds_left(10.0, 0.5, 0.501)) << "too little";

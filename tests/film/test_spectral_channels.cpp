@@ -26,7 +26,7 @@ struct CommaNumbers : std::numpunct<char> {
 
 TEST(SpectralChannels, Case35NameIsTheSameUnderAnyLocale) {
     const std::locale before = std::locale::global(std::locale(std::locale(), new CommaNumbers));
-    std::setlocale(LC_NUMERIC, "de_DE.UTF-8"); // where installed
+    std::setlocale(LC_NUMERIC, "de_DE.UTF-8"); // has no effect where it is not installed
     EXPECT_EQ(spectral_channel_name(380.0), "S0.380,000000nm");
     EXPECT_EQ(spectral_channel_name(1380.5), "S0.1380,500000nm");
     EXPECT_EQ(nm_of("S0.380,000000nm"), 380.0);

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "host/fit/bispectral_data.h"
-#include "host/fit/fit.h"
-#include "host/spectral/reradiation.h"
+#include "reradiant/bispectral_data.h"
+#include "reradiant/fit.h"
+#include "reradiant/reradiation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,8 @@ inline std::vector<TestFluorophore> two_fluorophores() {
     return {{520.0, 35.0, 0.8, 600.0, 22.0, 0.9}, {380.0, 30.0, 0.6, 470.0, 25.0, 0.8}};
 }
 
-/// Over a reflectance that leaves all light that the fluorophores do not absorb: a bright white.
+/// Returns the matrix of the fluorophores over a reflectance that leaves all light that they do not
+/// absorb: a bright white.
 inline ReradiationMatrix white_matrix(const std::vector<TestFluorophore>& list,
                                       const WavelengthGrid& emission,
                                       const WavelengthGrid& excitation) {
@@ -127,7 +128,7 @@ inline double stokes_peak(const ReradiationMatrix& matrix) {
     return matrix.values.cwiseProduct(stokes_entries(matrix)).maxCoeff();
 }
 
-/// Whether one of the lines holds these words.
+/// Returns true when one of the lines holds these words.
 inline bool says(const std::vector<std::string>& lines, const std::string& words) {
     return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
         return line.find(words) != std::string::npos;

@@ -1,6 +1,6 @@
-#include "host/error.h"
-#include "host/fit/knot_choice.h"
-#include "host/fit/smooth_basis.h"
+#include "host/fit/models/knot_choice.h"
+#include "host/fit/models/smooth_basis.h"
+#include "reradiant/error.h"
 #include "tests/fit/fit_cases.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-#include "host/error.h"
-#include "host/fit/bispectral_data.h"
-#include "host/fit/prepared_target.h"
+#include "host/fit/data/prepared_target.h"
+#include "reradiant/bispectral_data.h"
+#include "reradiant/error.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"
 

@@ -1,4 +1,4 @@
-#include "host/fit/model_selection.h"
+#include "host/fit/models/model_selection.h"
 
 #include <gtest/gtest.h>
 

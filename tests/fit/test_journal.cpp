@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/fit/solve_journal.h"
+#include "host/fit/solver/solve_journal.h"
+#include "reradiant/error.h"
 #include "tests/fit/fit_cases.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ void expect_same(const FitResult& a, const FitResult& b) {
     EXPECT_EQ(a.trace.kkt, b.trace.kkt);
 }
 
-/// What a fit has kept when it is stopped after some steps.
+/// Returns the journal that a fit has kept when it is stopped after `steps` steps.
 nlohmann::json kept_after(int steps, int threads) {
     SolveJournal journal;
     nlohmann::json kept;

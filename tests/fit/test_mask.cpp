@@ -1,6 +1,7 @@
-#include "host/error.h"
-#include "host/fit/fit.h"
-#include "host/fit/fit_summary.h"
+#include "host/fit/data/fit_mask.h"
+#include "host/fit/result/fit_summary.h"
+#include "reradiant/error.h"
+#include "reradiant/fit.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"
 #include "tests/spectral/scatter_cases.h"
@@ -54,9 +55,8 @@ TEST(MaskRules, AreReadAndWrittenAlike) {
     ASSERT_EQ(rules.boxes.size(), 1u);
     EXPECT_EQ(rules.boxes[0], (MaskBox{300.0, 350.0, 500.0, 560.0}));
     for (const char* const text : {"auto", "none", "first:10,box:300-350x500-560",
-                                   "auto,second:15.5,box:1-2x3-4,box:5-5x6-6"}) {
+                                   "auto,second:15.5,box:1-2x3-4,box:5-5x6-6"})
         EXPECT_EQ(mask_rules_text(mask_rules_from_text(text)), text);
-    }
 }
 
 TEST(MaskRules, AnythingElseIsRefused) {
@@ -137,7 +137,7 @@ TEST(FitMask, ScatterNoLongerHidesTheFluorescence) {
 }
 
 TEST(FitMask, NoiseBandsAndMatrixAreThoseOfDataWithGaps) {
-    // As high as the fluorescence, once narrow and once over three bands.
+    // The scatter is as high as the fluorescence, once narrow and once over three bands.
     for (const double fwhm : {2.0, 10.0}) {
         const ScatteredData data(2.0, 1.0, fwhm);
         const FitResult masked = fit(data.scattered, "auto", 2);

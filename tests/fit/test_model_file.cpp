@@ -1,6 +1,8 @@
-#include "host/fit/fit_report.h"
-#include "host/fit/model_file.h"
-#include "host/scene/scene.h"
+#include "host/fit/result/fit_report.h"
+#include "reradiant/fit.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/scene.h"
+#include "reradiant/scene_file.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"
 

@@ -1,8 +1,8 @@
-#include "host/fit/noise_estimate.h"
-#include "host/fit/prepared_target.h"
-#include "host/fit/rounding_steps.h"
+#include "host/fit/data/noise_estimate.h"
+#include "host/fit/data/prepared_target.h"
+#include "host/fit/data/rounding_steps.h"
 #include "tests/fit/fit_cases.h"
-#include "tests/full_run.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 using namespace reradiant;
 
-// What the numbers themselves say of their errors.
+// These tests are of what the numbers of a data set themselves say of their errors.
 
 namespace {
 
@@ -87,7 +87,7 @@ TEST(NoiseEstimate, TwoDecimalsOfARealTable) {
 }
 
 TEST(NoiseEstimate, RoundingIsInTheBands) {
-    const unsigned runs = is_full_run() ? 20 : 3;
+    const unsigned runs = test::is_full_run() ? 20 : 3;
     const ReradiationMatrix truth = true_matrix(two_fluorophores());
     double mean = 0.0;
     for (unsigned seed = 1; seed <= runs; ++seed) {
@@ -115,7 +115,7 @@ TEST(NoiseEstimate, ThreeDigitsOfEveryEntry) {
 }
 
 TEST(NoiseEstimate, ZerosOfCutOffNoiseAreNoCertainties) {
-    const unsigned runs = is_full_run() ? 20 : 3;
+    const unsigned runs = test::is_full_run() ? 20 : 3;
     const ReradiationMatrix truth = true_matrix(two_fluorophores());
     const double noise = 0.02 * stokes_peak(truth);
     double mean = 0.0;

@@ -1,4 +1,4 @@
-#include "host/fit/gaussian_model.h"
+#include "host/fit/models/gaussian_model.h"
 #include "tests/fit/fit_cases.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "host/fit/error_bands.h"
-#include "host/fit/non_negative_solver.h"
+#include "host/fit/result/error_bands.h"
+#include "host/fit/solver/non_negative_solver.h"
 
 #include <Eigen/Dense>
 #include <ceres/cost_function.h>

@@ -1,10 +1,13 @@
-#include "host/error.h"
-#include "host/fit/stack_inversion.h"
-#include "host/measure/measure.h"
+#include "host/fit/stack/stack_inversion.h"
+#include "host/measure/measure_substrate.h"
+#include "reradiant/error.h"
+#include "reradiant/measure.h"
+#include "reradiant/reradiation.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"
-#include "tests/full_run.h"
+#include "tests/support/full_run.h"
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -31,7 +34,8 @@ LayerStack varnish(double thickness = 0.5) {
     return {{layer}};
 }
 
-/// What an instrument sees of the substrate under a stack, with the same noise everywhere.
+/// Returns the data of an instrument that sees the substrate under a stack, with the same noise
+/// everywhere.
 BispectralData seen_through(const LayerStack& stack, double noise,
                             const std::vector<double>& theta_o, unsigned seed = 1) {
     MeasureRequest request;
@@ -67,7 +71,7 @@ BispectralData seen_through(const LayerStack& stack, double noise,
 TEST(StackInversion, UndoesModelB) {
     const SubstrateData bare =
         invert_stack(seen_through(varnish(), 0.0, {0.0, 60.0}), varnish(), {});
-    // The same formulas forwards and backwards in double precision; the varnish passes 9 % at 300.
+    // Both ways use the same formulas in double precision; the varnish passes 9 % at 300 nm.
     EXPECT_LE((bare.data.blocks[0].value - substrate().values).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_FALSE(bare.data.blocks[0].geometry);
 }
@@ -134,7 +138,7 @@ TEST(StackInversion, BandsThroughTheLayerCoverTheTruth) {
     FitSettings settings;
     settings.stack = varnish();
     settings.rank = 1;
-    const unsigned runs = is_full_run() ? 20 : 4;
+    const unsigned runs = test::is_full_run() ? 20 : 4;
     for (const double noise : {1e-4, 2e-3}) {
         double mean = 0.0;
         for (unsigned seed = 1; seed <= runs; ++seed)

@@ -1,4 +1,4 @@
-#include "host/error.h"
+#include "reradiant/error.h"
 #include "tests/fit/fit_cases.h"
 
 #include <gtest/gtest.h>
@@ -129,7 +129,7 @@ TEST(Stiff, YieldOfWhatHardlyAbsorbsIsUnknown) {
                                                 emission_10_nm(), excitation_10_nm(), 0.97);
     BispectralData data = noisy_data(truth, 0.01 * stokes_peak(truth), true, 9);
     for (int i = 8; i < data.excitation.count; ++i)
-        data.blocks[0].sigma(i - 8, i) = 0.2; // where 2 % are absorbed
+        data.blocks[0].sigma(i - 8, i) = 0.2; // against an absorptance of 2 %
     const FitResult result = fit(data, 1);
     ASSERT_EQ(result.quantum_yield.size(), 1u);
     EXPECT_TRUE(std::isnan(result.quantum_yield[0].value));

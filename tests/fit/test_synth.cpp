@@ -1,6 +1,7 @@
-#include "host/fit/synth.h"
-#include "host/fit/synth_band.h"
-#include "tests/spectral/scratch_folder.h"
+#include "host/fit/synth/synth_band.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/synth.h"
+#include "tests/support/scratch_folder.h"
 
 #include <Eigen/LU>
 
@@ -72,7 +73,7 @@ std::array<double, 2> moments(const Eigen::MatrixXd& values, int column) {
     return {first / sum, second / sum - first * first / (sum * sum)};
 }
 
-class Synth : public ScratchFolder {};
+class Synth : public test::ScratchFolder {};
 
 } // namespace
 
@@ -174,7 +175,8 @@ TEST_F(Synth, BandpassesWorkUnderAStack) {
     const Eigen::MatrixXd seen = synth_noise_free(recipe)[0];
     recipe.stack.layers.clear();
     const Eigen::MatrixXd bare = synth_noise_free(recipe)[0];
-    // What n = 1.5 takes away: T(30) T(0) / n^2 / (1 - r rho)^2, over this weak substrate.
+    // A layer of n = 1.5 leaves the share T(30) T(0) / n^2 / (1 - r rho)^2 over this weak
+    // substrate.
     const double share = 0.96 * 0.9585 / 2.25 / std::pow(1.0 - 0.596346 * 0.15, 2);
     EXPECT_NEAR(seen.sum() / bare.sum(), share, 0.01);
 }

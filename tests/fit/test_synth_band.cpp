@@ -1,4 +1,4 @@
-#include "host/fit/synth_band.h"
+#include "host/fit/synth/synth_band.h"
 
 #include <gtest/gtest.h>
 

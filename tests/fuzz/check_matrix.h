@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/matrix_io.h"
+#include "reradiant/reradiation_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace reradiant::fuzz {

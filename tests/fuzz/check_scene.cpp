@@ -8,15 +8,15 @@ namespace reradiant::fuzz {
 namespace {
 
 void check_shape(const SphereShape& sphere) {
-    require_all_finite(sphere.center, "centre of a sphere");
+    require_all_finite(sphere.centre, "centre of a sphere");
     require_finite(sphere.radius, "radius of a sphere");
 }
 void check_shape(const RectangleShape& rectangle) {
-    for (const Vector3& part : {rectangle.center, rectangle.edge_u, rectangle.edge_v})
+    for (const Vector3& part : {rectangle.centre, rectangle.edge_u, rectangle.edge_v})
         require_all_finite(part, "rectangle");
 }
 void check_shape(const DiskShape& disk) {
-    require_all_finite(disk.center, "centre of a disk");
+    require_all_finite(disk.centre, "centre of a disk");
     require_all_finite(disk.normal, "normal of a disk");
     require_finite(disk.radius, "radius of a disk");
 }

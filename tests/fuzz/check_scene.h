@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/scene/scene.h"
+#include "reradiant/scene.h"
 
 namespace reradiant::fuzz {
 

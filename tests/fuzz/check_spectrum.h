@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/spectrum_formats.h"
+#include "host/spectral/spectrum/spectrum_formats.h"
 #include "tests/fuzz/fuzz_input.h"
 
 #include <algorithm>
@@ -8,7 +8,8 @@
 
 namespace reradiant::fuzz {
 
-/// What every reader of spectra promises: columns of one length, finite, wavelengths ascending.
+/// Checks what every reader of spectra promises: columns of one length, finite, with wavelengths
+/// that ascend.
 inline void check_spectrum(const NumberTable& table) {
     for (const auto& column : table.columns) {
         require_all_finite(column, "column of a spectrum");

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/scene/sha256.h"
+#include "host/scene/model/sha256.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace reradiant::fuzz {

@@ -1,7 +1,8 @@
 #include "host/check/check.h"
 #include "tests/fuzz/fuzz_input.h"
 
-// What `check --save` kept, against results like those of the corpus.
+// This target reads results as `check --save` keeps them, and compares them with a report like that
+// of the corpus.
 
 using namespace reradiant;
 

@@ -1,4 +1,4 @@
-#include "host/render/checkpoint.h"
+#include "host/render/checkpoint/checkpoint.h"
 #include "tests/fuzz/digested_input.h"
 
 // Checkpoints of a render.
@@ -7,7 +7,7 @@ using namespace reradiant;
 
 namespace {
 
-/// As in the corpus.
+/// The checkpoints in the corpus have this many floats and this identity.
 constexpr std::uint64_t floats = 12;
 const SampleIdentity identity = {{"scene", "abc"}, {"seed", "7"}};
 

@@ -1,4 +1,4 @@
-#include "host/scene/image_io.h"
+#include "host/scene/images/image_io.h"
 #include "tests/fuzz/fuzz_input.h"
 
 // Images that textures, environments and heightfields name: PNG by libpng, EXR by OpenEXR.

@@ -34,7 +34,8 @@ struct Folder {
     }
 };
 
-/// Before the first input, of targets without a folder too: warnings would be most of the time.
+/// Warnings are switched off before the first input, for targets without a folder too: they would
+/// take most of the time.
 [[maybe_unused]] const bool is_quiet = [] {
     spdlog::set_level(spdlog::level::off);
     return true;
@@ -49,7 +50,7 @@ const fs::path& folder() {
 
 fs::path put(const std::string& name, std::string_view bytes) {
     fs::path file = folder() / name;
-    // Not by a stream: this is most of what a fast reader's execution costs.
+    // A stream would be slower: writing is most of what a fast reader's execution costs.
     const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     if (descriptor < 0 ||
         ::write(descriptor, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) {

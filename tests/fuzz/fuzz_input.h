@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/error.h"
+#include "reradiant/error.h"
 
 #include <cstddef>
 #include <cstdint>

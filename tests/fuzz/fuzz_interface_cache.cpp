@@ -1,4 +1,4 @@
-#include "host/layers/interface_file.h"
+#include "host/layers/rough/interface_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
 #include <algorithm>

@@ -1,9 +1,10 @@
-#include "host/study/converge_store.h"
+#include "host/study/converge/converge_store.h"
 #include "tests/fuzz/fuzz_input.h"
 
 #include <cmath>
 
-// What an earlier `converge` kept of a method: it is taken whole or not at all, and never an error.
+// This target reads what an earlier `converge` kept of a method: it is taken whole or not at all,
+// and never an error.
 
 using namespace reradiant;
 

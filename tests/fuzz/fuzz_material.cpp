@@ -1,4 +1,5 @@
-#include "host/scene/stack_file.h"
+#include "host/scene/toml/stack_file.h"
+#include "reradiant/scene_file.h"
 #include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/fuzz_input.h"
 

@@ -1,10 +1,10 @@
-#include "host/fit/bispectral_data.h"
+#include "reradiant/bispectral_data.h"
 #include "tests/fuzz/fuzz_input.h"
 
 #include <cmath>
 
-// What `fit` reads: the CSV of `measure`, and the re-radiation CSV with gaps. NaN stands for what
-// was not measured; infinities stand for nothing.
+// This target reads the data of `fit`: the CSV of `measure`, and the re-radiation CSV with gaps.
+// NaN stands for what was not measured; infinities stand for nothing.
 
 using namespace reradiant;
 

@@ -1,4 +1,5 @@
-#include "host/scene/scene.h"
+#include "reradiant/scene.h"
+#include "reradiant/scene_file.h"
 #include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/fuzz_input.h"
 

@@ -1,4 +1,4 @@
-#include "host/scene/mesh_io.h"
+#include "host/scene/meshes/mesh_io.h"
 #include "tests/fuzz/check_mesh.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {

@@ -1,4 +1,4 @@
-#include "host/fit/synth.h"
+#include "reradiant/synth.h"
 #include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/fuzz_input.h"
 

@@ -1,4 +1,4 @@
-#include "host/film/spectral_image.h"
+#include "reradiant/spectral_image.h"
 #include "tests/fuzz/fuzz_input.h"
 
 // Spectral images with their statistics. Values may be NaN, as other programs may have written

@@ -1,4 +1,5 @@
-#include "host/spectral/matrix_io.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/spectrum_file.h"
 #include "tests/fuzz/check_spectrum.h"
 
 // A spectrum of any format that the file says it is of; two columns (.spd and the CSV of spectra),

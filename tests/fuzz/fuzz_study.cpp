@@ -1,4 +1,4 @@
-#include "host/study/study_file.h"
+#include "host/study/study/study_file.h"
 #include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/fuzz_input.h"
 

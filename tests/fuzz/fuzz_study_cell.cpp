@@ -1,4 +1,4 @@
-#include "host/study/study_store.h"
+#include "host/study/study/study_store.h"
 #include "tests/fuzz/fuzz_input.h"
 
 // The cell.json of an earlier run of a study: it is taken whole or not at all, and never an error.

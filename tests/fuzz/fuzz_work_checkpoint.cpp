@@ -1,6 +1,6 @@
-#include "host/fit/solve_journal.h"
+#include "host/fit/solver/solve_journal.h"
 #include "host/measure/walk_states.h"
-#include "host/render/work_checkpoint.h"
+#include "host/render/checkpoint/work_checkpoint.h"
 #include "tests/fuzz/digested_input.h"
 
 // Checkpoints of fits and of measurements by the walk.
@@ -9,7 +9,7 @@ using namespace reradiant;
 
 namespace {
 
-/// As in the corpus.
+/// The checkpoints in the corpus have this identity.
 const SampleIdentity identity = {{"data", "abc"}, {"seed", "7"}};
 
 void read_as_walks(const nlohmann::json& state) {

@@ -25,7 +25,8 @@ Scene scene_with_mesh() {
     return scene;
 }
 
-/// A second of processor time, so that what else the machine does counts for nothing.
+/// Returns the million rays traced in a second of processor time, so that what else the machine
+/// does counts for nothing.
 double million_rays_per_second(const Geometry& geometry, const std::vector<RayRecord>& rays,
                                bool coherent) {
     std::vector<HitRecord> hits(rays.size());
@@ -36,7 +37,7 @@ double million_rays_per_second(const Geometry& geometry, const std::vector<RayRe
     return static_cast<double>(rays.size()) / seconds * 1e-6;
 }
 
-/// Of the heap and other private memory, resident or not.
+/// Returns the kilobytes of the heap and of other private memory, resident or not.
 long taken_kilobytes() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)

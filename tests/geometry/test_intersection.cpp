@@ -46,11 +46,11 @@ struct Reference {
         light = l;
         normal = (1 / std::sqrt(n * n)) * n;
     }
-    void sphere(V o, V d, V center, Real r, std::uint32_t s, std::uint32_t l) {
-        const Real a = d * d, b = (o - center) * d, c = (o - center) * (o - center) - r * r;
+    void sphere(V o, V d, V centre, Real r, std::uint32_t s, std::uint32_t l) {
+        const Real a = d * d, b = (o - centre) * d, c = (o - centre) * (o - centre) - r * r;
         const Real root = std::sqrt(b * b - a * c); // NaN: no hit, and take() ignores it
         for (const Real candidate : {(-b - root) / a, (-b + root) / a})
-            take(candidate, o + candidate * d - center, s, l);
+            take(candidate, o + candidate * d - centre, s, l);
     }
     void parallelogram(V o, V d, V corner, V e1, V e2, bool half, std::uint32_t s,
                        std::uint32_t l) {
@@ -59,14 +59,14 @@ struct Reference {
         if (b1 >= 0 && b2 >= 0 && (half ? b1 + b2 <= 1 : b1 <= 1 && b2 <= 1))
             take(e2 * q / det, cross(e1, e2), s, l);
     }
-    void disk(V o, V d, V center, V n, Real r, std::uint32_t s) {
-        const Real candidate = n * (center - o) / (n * d);
-        const V p = o + candidate * d - center;
+    void disk(V o, V d, V centre, V n, Real r, std::uint32_t s) {
+        const Real candidate = n * (centre - o) / (n * d);
+        const V p = o + candidate * d - centre;
         if (p * p <= r * r)
             take(candidate, n, s, NO_INDEX);
     }
-    void rectangle(V o, V d, V center, V u, V w, std::uint32_t s, std::uint32_t l) {
-        parallelogram(o, d, center - 0.5L * (u + w), u, w, false, s, l);
+    void rectangle(V o, V d, V centre, V u, V w, std::uint32_t s, std::uint32_t l) {
+        parallelogram(o, d, centre - 0.5L * (u + w), u, w, false, s, l);
     }
 };
 
@@ -77,11 +77,11 @@ Reference brute_force(const Scene& scene, const RayRecord& ray) {
     for (std::uint32_t i = 0; i < scene.shapes.size(); ++i) {
         const auto& g = scene.shapes[i].geometry;
         if (const auto* s = std::get_if<SphereShape>(&g))
-            best.sphere(o, d, v(s->center), s->radius, i, NO_INDEX);
+            best.sphere(o, d, v(s->centre), s->radius, i, NO_INDEX);
         if (const auto* r = std::get_if<RectangleShape>(&g))
-            best.rectangle(o, d, v(r->center), v(r->edge_u), v(r->edge_v), i, NO_INDEX);
+            best.rectangle(o, d, v(r->centre), v(r->edge_u), v(r->edge_v), i, NO_INDEX);
         if (const auto* k = std::get_if<DiskShape>(&g))
-            best.disk(o, d, v(k->center), v(k->normal), k->radius, i);
+            best.disk(o, d, v(k->centre), v(k->normal), k->radius, i);
         if (const auto* m = std::get_if<MeshShape>(&g)) {
             const auto corner = [&](std::size_t n) {
                 return V{m->positions[3 * n], m->positions[3 * n + 1], m->positions[3 * n + 2]};
@@ -92,9 +92,9 @@ Reference brute_force(const Scene& scene, const RayRecord& ray) {
     }
     for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
         if (const auto* r = std::get_if<RectangleLight>(&scene.lights[i]))
-            best.rectangle(o, d, v(r->center), v(r->edge_u), v(r->edge_v), NO_INDEX, i);
+            best.rectangle(o, d, v(r->centre), v(r->edge_u), v(r->edge_v), NO_INDEX, i);
         if (const auto* s = std::get_if<SphereLight>(&scene.lights[i]))
-            best.sphere(o, d, v(s->center), s->radius, NO_INDEX, i);
+            best.sphere(o, d, v(s->centre), s->radius, NO_INDEX, i);
     }
     return best;
 }

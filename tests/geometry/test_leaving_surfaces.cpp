@@ -25,27 +25,29 @@ RayRecord leave(const HitRecord& hit, const Vector3& direction, float scale = 1.
     return ray;
 }
 
-/// Rays towards the surfaces of a scene of size about 1 around `center`.
-std::vector<RayRecord> rays_towards(const Vector3& center, std::size_t count, unsigned seed) {
+/// Rays towards the surfaces of a scene of size about 1 around `centre`.
+std::vector<RayRecord> rays_towards(const Vector3& centre, std::size_t count, unsigned seed) {
     std::mt19937_64 random(seed);
     std::vector<RayRecord> rays;
     for (std::size_t i = 0; i < count; ++i) {
-        const Vector3 from = sum(center, random_direction(random), 4.0);
-        const Vector3 to = sum(center, random_direction(random), 0.7);
+        const Vector3 from = sum(centre, random_direction(random), 4.0);
+        const Vector3 to = sum(centre, random_direction(random), 0.7);
         const Vector3 way = sum(to, from, -1.0);
         rays.push_back(ray_record(from, sum({}, way, 1.0 / std::sqrt(dot(way, way)))));
     }
     return rays;
 }
 
-/// How many rays that leave a convex or flat surface, on the side of its normal, hit it again.
-std::size_t self_hits(const Shape& shape, const Vector3& center, std::size_t count, float scale) {
+/// Returns how many rays that leave a convex or flat surface, on the side of its normal, hit it
+/// again. They start where `count` rays towards `centre` hit the surface, moved off it as `leave`
+/// says of `scale`.
+std::size_t self_hits(const Shape& shape, const Vector3& centre, std::size_t count, float scale) {
     Scene scene;
     scene.shapes = {shape};
     const Geometry geometry(scene);
     std::mt19937_64 random(17);
     std::vector<RayRecord> leaving;
-    for (const HitRecord& hit : trace(geometry, rays_towards(center, count, 5))) {
+    for (const HitRecord& hit : trace(geometry, rays_towards(centre, count, 5))) {
         if (hit.shape == NO_INDEX)
             continue;
         Vector3 way = random_direction(random);
@@ -60,12 +62,12 @@ std::size_t self_hits(const Shape& shape, const Vector3& center, std::size_t cou
     return again;
 }
 
-MeshShape one_triangle(const Vector3& center) {
+MeshShape one_triangle(const Vector3& centre) {
     MeshShape mesh;
     const Vector3 corners[3] = {{-2, -1.5, 0.4}, {2, -1, -0.7}, {0.3, 2.5, 0.2}};
     for (const auto& corner : corners)
         for (std::size_t axis = 0; axis < 3; ++axis)
-            mesh.positions.push_back(static_cast<float>(corner[axis] + center[axis]));
+            mesh.positions.push_back(static_cast<float>(corner[axis] + centre[axis]));
     mesh.indices = {0, 1, 2};
     return mesh;
 }
@@ -155,14 +157,14 @@ TEST(LeavingSurfaces, Case04SurfacesClosePairwiseAreBothHit) {
 }
 
 TEST(LeavingSurfaces, Case05AClosedMeshFarFromTheOriginDoesNotLeak) {
-    const Vector3 center{148376, 1234, -223423};
+    const Vector3 centre{148376, 1234, -223423};
     Scene scene;
-    scene.shapes = {shape_of(triangle_sphere(center, 100.0, 4))};
+    scene.shapes = {shape_of(triangle_sphere(centre, 100.0, 4))};
     const Geometry geometry(scene);
     std::mt19937_64 random(9);
     std::vector<RayRecord> rays;
     for (int i = 0; i < 1000000; ++i)
-        rays.push_back(ray_record(center, random_direction(random)));
+        rays.push_back(ray_record(centre, random_direction(random)));
     std::size_t leaks = 0;
     for (const HitRecord& hit : trace(geometry, rays))
         leaks += hit.shape == NO_INDEX;

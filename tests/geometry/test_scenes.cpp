@@ -8,11 +8,11 @@ namespace reradiant::testing {
 
 namespace {
 
-std::uint32_t add_vertex(MeshShape& mesh, const Vector3& direction, const Vector3& center,
+std::uint32_t add_vertex(MeshShape& mesh, const Vector3& direction, const Vector3& centre,
                          double radius) {
     const double length = std::sqrt(dot(direction, direction));
     for (std::size_t i = 0; i < 3; ++i)
-        mesh.positions.push_back(static_cast<float>(center[i] + radius * direction[i] / length));
+        mesh.positions.push_back(static_cast<float>(centre[i] + radius * direction[i] / length));
     return static_cast<std::uint32_t>(mesh.positions.size() / 3 - 1);
 }
 
@@ -69,7 +69,7 @@ Shape shape_of(std::variant<SphereShape, RectangleShape, DiskShape, MeshShape> g
     return {std::move(geometry), material};
 }
 
-MeshShape triangle_sphere(const Vector3& center, double radius, int levels) {
+MeshShape triangle_sphere(const Vector3& centre, double radius, int levels) {
     auto faces = icosahedron();
     for (int level = 0; level < levels; ++level) {
         std::vector<Face> split;
@@ -85,7 +85,7 @@ MeshShape triangle_sphere(const Vector3& center, double radius, int levels) {
         for (const Vector3& corner : {f.a, f.b, f.c}) {
             const auto [entry, is_new] = known.try_emplace(corner, 0);
             if (is_new)
-                entry->second = add_vertex(mesh, corner, center, radius);
+                entry->second = add_vertex(mesh, corner, centre, radius);
             mesh.indices.push_back(entry->second);
         }
     return mesh;

@@ -11,7 +11,7 @@ Shape shape_of(std::variant<SphereShape, RectangleShape, DiskShape, MeshShape> g
                int material = 0);
 
 /// A sphere of triangles: an icosahedron, each face split in four `levels` times.
-MeshShape triangle_sphere(const Vector3& center, double radius, int levels);
+MeshShape triangle_sphere(const Vector3& centre, double radius, int levels);
 
 /// Spheres, disks, rectangles and triangles of random size and place in a box of side 20, with
 /// a rectangle and a sphere light among them.

@@ -1,16 +1,9 @@
 #include "tests/kernels/probe.h"
+#include "host/device/opencl_device.h"
 
 #include <algorithm>
 
 namespace reradiant::test {
-
-const Device& device() {
-    static const Device opened = [] {
-        prepare_opencl(0);
-        return Device("");
-    }();
-    return opened;
-}
 
 const cl::Program& probes() {
     static const cl::Program program =

@@ -1,19 +1,19 @@
 // Device functions called over arrays, for comparison with the same source compiled in double.
 // Each probe reads `stride_in` floats an item and writes `stride_out`.
-#include "kernels/camera.h"
-#include "kernels/features.h"
-#include "kernels/fresnel.h"
-#include "kernels/layer_stack.h"
-#include "kernels/lights.h"
-#include "kernels/microfacet.h"
-#include "kernels/portable.h"
-#include "kernels/random.h"
-#include "kernels/reradiation.h"
-#include "kernels/sampling.h"
-#include "kernels/sequence.h"
-#include "kernels/shared.h"
-#include "kernels/table.h"
-#include "kernels/walk_facets.h"
+#include "kernels/core/features.h"
+#include "kernels/core/portable.h"
+#include "kernels/core/random.h"
+#include "kernels/core/sampling.h"
+#include "kernels/core/sequence.h"
+#include "kernels/core/shared.h"
+#include "kernels/core/table.h"
+#include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/microfacet.h"
+#include "kernels/scene/camera.h"
+#include "kernels/scene/lights.h"
+#include "kernels/stack/layer_stack.h"
+#include "kernels/stack/reradiation.h"
+#include "kernels/walk/walk_facets.h"
 
 #define ITEM                                                                                       \
     const uint i = (uint)get_global_id(0);                                                         \

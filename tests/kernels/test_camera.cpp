@@ -1,4 +1,4 @@
-#include "kernels/camera.h"
+#include "kernels/scene/camera.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>

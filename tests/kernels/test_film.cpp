@@ -1,5 +1,6 @@
 // The film kernel itself: what it refuses, and that its sums do not stop growing.
-#include "kernels/shared.h"
+#include "host/device/opencl_device.h"
+#include "kernels/core/shared.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +49,7 @@ public:
         const auto counted = statistics.map(CL_MAP_READ, 0, statistics_count);
         statistics_.assign(counted.span().begin(), counted.span().end());
     }
-    /// As the host reads it: the sum without its compensation.
+    /// Returns the sum as the host reads it: without its compensation.
     double sum(std::size_t lane) const {
         return static_cast<double>(sums_[lane]) - static_cast<double>(sums_[lanes + lane]);
     }

@@ -1,4 +1,4 @@
-#include "kernels/fresnel.h"
+#include "kernels/scatter/fresnel.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>

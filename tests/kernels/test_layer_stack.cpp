@@ -1,4 +1,4 @@
-#include "kernels/layer_stack.h"
+#include "kernels/stack/layer_stack.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "kernels/lights.h"
+#include "kernels/scene/lights.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "kernels/microfacet.h"
+#include "kernels/scatter/microfacet.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>

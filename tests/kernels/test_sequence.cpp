@@ -1,4 +1,4 @@
-#include "kernels/sequence.h"
+#include "kernels/core/sequence.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>

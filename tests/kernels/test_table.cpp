@@ -1,4 +1,4 @@
-#include "kernels/table.h"
+#include "kernels/core/table.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>

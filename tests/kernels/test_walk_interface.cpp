@@ -1,4 +1,4 @@
-#include "kernels/walk_interface.h"
+#include "kernels/walk/walk_interface.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/layers/stack.h"
-#include "kernels/microfacet.h"
+#include "kernels/scatter/microfacet.h"
+#include "reradiant/layer_stack.h"
 
 #include <cmath>
 #include <random>
@@ -33,9 +33,8 @@ inline Vector upside_down(const Vector& v) {
 /// Unpolarised Fresnel reflectance by its textbook form.
 inline double fresnel(double cos_i, double n_i, double n_t) {
     const double sin_t = n_i / n_t * std::sqrt(std::fmax(1.0 - cos_i * cos_i, 0.0));
-    if (sin_t >= 1.0) {
+    if (sin_t >= 1.0)
         return 1.0;
-    }
     const double cos_t = std::sqrt(1.0 - sin_t * sin_t);
     const double s = (n_i * cos_i - n_t * cos_t) / (n_i * cos_i + n_t * cos_t);
     const double p = (n_t * cos_i - n_i * cos_t) / (n_t * cos_i + n_i * cos_t);
@@ -51,8 +50,8 @@ public:
     enum class End { Air, Substrate, Absorbed, Lost };
     struct Result {
         End end;
-        double cosine;    ///< where it left, if it did
-        Vector direction; ///< of travel, there
+        double cosine;    ///< at which it left, if it did
+        Vector direction; ///< in which it travelled there
     };
 
     /// One photon: from the air with cosine c, or emitted by the (black) substrate.
@@ -66,9 +65,8 @@ public:
     /// One that leaves the substrate in direction w of the lowest slab.
     Result from_below(const StackValues& stack, Vector w) {
         const int last = static_cast<int>(stack.size());
-        if (!traverse(stack, last, w)) {
+        if (!traverse(stack, last, w))
             return {End::Absorbed, 0.0, w};
-        }
         return travel(stack, last, w);
     }
 
@@ -76,30 +74,26 @@ private:
     static double ior(const StackValues& stack, int medium) {
         return medium == 0 ? 1.0 : stack[static_cast<std::size_t>(medium) - 1].ior;
     }
-    /// From the end of the slab that w points away from to one of its ends, which w then points at;
-    /// false when absorbed on the way.
+    /// Travels from the end of the slab that w points away from to one of its ends, which w then
+    /// points at; false when absorbed on the way.
     bool traverse(const StackValues& stack, int medium, Vector& w) {
-        if (medium == 0) {
+        if (medium == 0)
             return true;
-        }
         const LayerValues& layer = stack[static_cast<std::size_t>(medium) - 1];
         const double depth = layer.tau + layer.tau_scattering;
         double z = w.z < 0.0 ? depth : 0.0;
         while (true) {
             z -= std::log(1.0 - uniform()) * w.z;
-            if (z <= 0.0 || z >= depth) {
+            if (z <= 0.0 || z >= depth)
                 return true;
-            }
-            if (uniform() * depth < layer.tau) {
+            if (uniform() * depth < layer.tau)
                 return false;
-            }
             w = deflect(w, henyey_greenstein(layer.anisotropy));
         }
     }
     double henyey_greenstein(double g) {
-        if (g == 0.0) {
+        if (g == 0.0)
             return 2.0 * uniform() - 1.0;
-        }
         const double s = (1.0 - g * g) / (1.0 - g + 2.0 * g * uniform());
         return (1.0 + g * g - s * s) / (2.0 * g);
     }
@@ -116,43 +110,36 @@ private:
     Result travel(const StackValues& stack, int medium, Vector w) {
         const int substrate = static_cast<int>(stack.size());
         while (true) {
-            if (w.z > 0.0 && medium == 0) {
+            if (w.z > 0.0 && medium == 0)
                 return {End::Air, w.z, w};
-            }
-            if (w.z < 0.0 && medium == substrate) {
+            if (w.z < 0.0 && medium == substrate)
                 return {End::Substrate, -w.z, w};
-            }
             const int next = w.z < 0.0 ? medium + 1 : medium - 1;
             const LayerValues& layer = stack[static_cast<std::size_t>(std::max(medium, next)) - 1];
             bool lost = false;
             const bool passed = cross(layer, ior(stack, medium), ior(stack, next), w, lost);
-            if (lost) {
+            if (lost)
                 return {End::Lost, 0.0, w};
-            }
             medium = passed ? next : medium;
-            if (!traverse(stack, medium, w)) {
+            if (!traverse(stack, medium, w))
                 return {End::Absorbed, 0.0, w};
-            }
         }
     }
 
     /// Scatters w at an interface; true when it ends in the other medium.
     bool cross(const LayerValues& layer, double n_own, double n_other, Vector& w, bool& lost) {
         const bool upwards = w.z > 0.0;
-        if (upwards) { // always look from above
+        if (upwards) // always look from above
             w = upside_down(w);
-        }
         bool passed = false;
-        if (layer.alpha == 0.0 || n_own == n_other) {
+        if (layer.alpha == 0.0 || n_own == n_other)
             passed = scatter_smooth(n_own, n_other, w);
-        } else if (layer.scattering == Scattering::Single) {
+        else if (layer.scattering == Scattering::Single)
             passed = scatter_single(layer, n_own, n_other, w, lost);
-        } else {
+        else
             passed = scatter_multiple(layer, n_own, n_other, w);
-        }
-        if (upwards) {
+        if (upwards)
             w = upside_down(w);
-        }
         return passed;
     }
 
@@ -170,9 +157,8 @@ private:
     static double lambda(const LayerValues& layer, const Vector& w) {
         const double tangent = std::sqrt(w.x * w.x + w.y * w.y) / w.z; // signed with w.z
         const double a = 1.0 / (layer.alpha * tangent);
-        if (layer.distribution == Distribution::Ggx) {
+        if (layer.distribution == Distribution::Ggx)
             return 0.5 * (-1.0 + std::copysign(std::sqrt(1.0 + 1.0 / (a * a)), a));
-        }
         return 0.5 * (std::erf(a) - 1.0) + std::exp(-a * a) / (2.0 * a * std::sqrt(M_PI));
     }
 
@@ -223,9 +209,8 @@ private:
             const double height = passed ? 1.0 - c : c;
             const double l = lambda(layer, ray);
             const double u = uniform();
-            if (ray.z > 0.0 && u > 1.0 - std::pow(height, l)) {
+            if (ray.z > 0.0 && u > 1.0 - std::pow(height, l))
                 return passed;
-            }
             const double next = height / std::pow(1.0 - u, 1.0 / l);
             c = passed ? 1.0 - next : next;
             const Vector v = -1.0 * ray;

@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/layers/effective_matrix.h"
+#include "host/layers/models/effective_matrix.h"
+#include "reradiant/error.h"
 
 #include <gtest/gtest.h>
 

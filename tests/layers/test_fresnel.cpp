@@ -1,4 +1,4 @@
-#include "kernels/fresnel.h"
+#include "kernels/scatter/fresnel.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,8 @@ namespace {
 /// Textbook amplitudes in extended precision.
 long double reflectance_by_amplitudes(long double cos_i, long double eta) {
     const long double sin2_t = (1.0L - cos_i * cos_i) / (eta * eta);
-    if (sin2_t >= 1.0L) {
+    if (sin2_t >= 1.0L)
         return 1.0L;
-    }
     const long double cos_t = std::sqrt(1.0L - sin2_t);
     const long double s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
     const long double p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);

@@ -1,4 +1,4 @@
-#include "kernels/microfacet.h"
+#include "kernels/scatter/microfacet.h"
 
 #include <gtest/gtest.h>
 
@@ -95,9 +95,8 @@ TEST(Microfacet, DensityIntegratesToOneAndSamplesFollowIt) {
                 double chi2 = 0.0;
                 for (std::size_t k = 0; k < cells.size(); ++k) {
                     const double mean = cells[k] * samples;
-                    if (mean > 5.0) {
+                    if (mean > 5.0)
                         chi2 += (found[k] - mean) * (found[k] - mean) / mean;
-                    }
                 }
                 // 36 tests at a family-wise rate of 1e-6: chi-square of 7 degrees at 3e-8 is 48;
                 // the quadrature adds about 3. A lobe 1 % too wide moves it by hundreds.

@@ -1,8 +1,8 @@
-#include "host/layers/adding.h"
-#include "kernels/fresnel.h"
-#include "kernels/microfacet.h"
-#include "tests/layers/private_cache.h"
+#include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/microfacet.h"
+#include "reradiant/adding.h"
 #include "tests/layers/reference_walk.h"
+#include "tests/support/private_cache.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -13,7 +13,7 @@ using namespace reradiant;
 
 namespace {
 
-const PrivateCache cache("rough-transport");
+const test::PrivateCache cache("rough-transport");
 
 double cos_deg(double degrees) {
     return std::cos(degrees * M_PI / 180.0);
@@ -119,9 +119,8 @@ TEST(RoughTransport, AgreesWithASlowWalkThroughWholeStacks) {
         }
         reference::Walker walker(101 + static_cast<unsigned>(k));
         double back = 0.0;
-        for (int i = 0; i < photons; ++i) {
+        for (int i = 0; i < photons; ++i)
             back += walker.from_substrate(stacks[k]).end == reference::Walker::End::Substrate;
-        }
         const double p = back / photons;
         EXPECT_NEAR(t->internal_reflectance(), p, 5.5 * std::sqrt(p * (1.0 - p) / photons) + 2e-3)
             << k;
@@ -217,7 +216,6 @@ TEST(RoughTransport, MayBeAskedFromParallelLoops) {
                                     Scattering::Single, 0.01 * k)})
                 ->transmission(1.0);
     });
-    for (std::size_t k = 2; k < found.size(); k += 2) {
+    for (std::size_t k = 2; k < found.size(); k += 2)
         EXPECT_LT(found[k], found[k - 2]);
-    }
 }

@@ -1,8 +1,8 @@
-#include "host/error.h"
-#include "host/layers/adding.h"
-#include "host/layers/scattering_slab.h"
-#include "tests/layers/private_cache.h"
+#include "host/layers/angular/scattering_slab.h"
+#include "reradiant/adding.h"
+#include "reradiant/error.h"
 #include "tests/layers/reference_walk.h"
+#include "tests/support/private_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ using namespace reradiant;
 
 namespace {
 
-const PrivateCache cache("scattering-slab");
+const test::PrivateCache cache("scattering-slab");
 
 double cos_deg(double degrees) {
     return std::cos(degrees * M_PI / 180.0);
@@ -31,9 +31,8 @@ public:
     explicit ChandrasekharH(double w) : albedo_(w), values_(count, 1.0) {
         for (int step = 0; step < 200; ++step) {
             std::vector<double> next;
-            for (int i = 0; i < count; ++i) {
+            for (int i = 0; i < count; ++i)
                 next.push_back((*this)(node(i)));
-            }
             values_ = next;
         }
     }
@@ -158,9 +157,8 @@ TEST(ScatteringSlab, AgreesWithASlowWalk) {
             EXPECT_NEAR(t->specular_albedo(cos_deg(theta)), q, margin(q)) << k << " " << theta;
         }
         double back = 0.0;
-        for (int i = 0; i < photons; ++i) {
+        for (int i = 0; i < photons; ++i)
             back += walker.from_substrate(stacks[k]).end == reference::Walker::End::Substrate;
-        }
         EXPECT_NEAR(t->internal_reflectance(), back / photons, margin(back / photons)) << k;
     }
 }

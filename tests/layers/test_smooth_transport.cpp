@@ -1,6 +1,6 @@
-#include "host/error.h"
-#include "host/layers/adding.h"
-#include "host/layers/smooth_stack.h"
+#include "host/layers/smooth/smooth_stack.h"
+#include "reradiant/adding.h"
+#include "reradiant/error.h"
 
 #include <gtest/gtest.h>
 
@@ -129,9 +129,8 @@ TEST(SmoothTransport, WhiteSubstrateUnderAnyLosslessStackReflectsEverything) {
 
 TEST(SmoothTransport, SixtyFourAlternatingLayersConserveEnergy) {
     StackValues stack;
-    for (int k = 0; k < 64; ++k) {
+    for (int k = 0; k < 64; ++k)
         stack.push_back(smooth(k % 2 == 0 ? 1.6 : 1.3));
-    }
     const auto t = adding_transport(stack);
     for (const double theta : {0.0, 60.0, 89.999}) {
         EXPECT_NEAR(t->specular_albedo(cos_deg(theta)) + t->transmission(cos_deg(theta)), 1.0,

@@ -1,13 +1,16 @@
 // The triple eval, sample, pdf of layered materials: chi-square of directions over half vectors,
 // and reflectances found by sampling against those of the goniophotometer.
-#include "host/error.h"
 #include "host/measure/layered_bsdf.h"
-#include "host/measure/measure.h"
+#include "host/measure/measure_substrate.h"
 #include "host/measure/surface_angles.h"
-#include "tests/full_run.h"
-#include "tests/layers/private_cache.h"
+#include "reradiant/error.h"
+#include "reradiant/measure.h"
+#include "tests/support/full_run.h"
+#include "tests/support/private_cache.h"
+#include "tests/support/statistics.h"
 
-#include <fmt/format.h>
+#include <Eigen/Core>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +22,7 @@ using kernels::Vec3;
 
 namespace {
 
-const PrivateCache cache("layered-bsdf");
+const test::PrivateCache cache("layered-bsdf");
 const WavelengthGrid one{550, 10, 1};
 
 Vec3 at_degrees(double theta) {
@@ -46,28 +49,15 @@ SubstrateValues metal(double alpha, Distribution distribution = Distribution::Gg
     return substrate;
 }
 
-/// Two-sided bound in standard deviations for n comparisons at a family-wise rate of 1e-6 (Sidak).
-double sidak_sigmas(int comparisons) {
-    const double each = -std::expm1(std::log1p(-1e-6) / comparisons);
-    double low = 0.0, high = 40.0;
-    for (int step = 0; step < 60; ++step) {
-        const double middle = 0.5 * (low + high);
-        (std::erfc(middle / std::sqrt(2.0)) > each ? low : high) = middle;
-    }
-    return high;
-}
-
 /// Cells over the half vector: rings that follow a lobe of width alpha and go on to the horizon.
 class HalfVectorCells {
 public:
     explicit HalfVectorCells(double alpha) {
-        for (const double t : {0.0, 0.3, 0.6, 0.9, 1.3, 2.0, 3.5}) {
+        for (const double t : {0.0, 0.3, 0.6, 0.9, 1.3, 2.0, 3.5})
             edges_.push_back(std::atan(t * alpha));
-        }
         const double last = edges_.back();
-        for (int k = 1; k <= 6; ++k) {
+        for (int k = 1; k <= 6; ++k)
             edges_.push_back(last + (0.5 * M_PI - last) * k / 6);
-        }
     }
     std::size_t count() const { return (edges_.size() - 1) * sectors; }
 
@@ -111,8 +101,8 @@ private:
     std::vector<double> edges_;
 };
 
-/// How often `drawn` finds each cell, empty when it finds a direction where the pdf of `claimed` is
-/// 0.
+/// Returns how often `drawn` finds each cell; empty when it finds a direction where the pdf of
+/// `claimed` is 0.
 std::vector<double> found_cells(const LayeredBsdf& drawn, const LayeredBsdf& claimed, const Vec3& w,
                                 const HalfVectorCells& cells, int count) {
     std::vector<double> seen(cells.count(), 0.0);
@@ -121,50 +111,31 @@ std::vector<double> found_cells(const LayeredBsdf& drawn, const LayeredBsdf& cla
     for (int i = 0; i < count; ++i) {
         const double u0 = uniform(generator), u1 = uniform(generator), u2 = uniform(generator);
         const LayeredBsdf::Sample sample = drawn.sample(w, {u0, u1, u2});
-        if (sample.is_delta || sample.w.z <= 0.0) {
+        if (sample.is_delta || sample.w.z <= 0.0)
             continue;
-        }
-        if (!(claimed.pdf(w, sample.w) > 0.0)) {
+        if (!(claimed.pdf(w, sample.w) > 0.0))
             return {};
-        }
         seen[cells.cell_of(w, sample.w)] += 1.0;
     }
     return seen;
 }
 
-/// How far the directions that `drawn` samples are from what the pdf of `claimed` says: standard
-/// deviations of a chi-square above its mean (Wilson and Hilferty 1931), infinite for a direction
-/// where the pdf is 0. Cells that expect less than 10 are taken together. `jacobian` is a factor
-/// that the pdf ought not to have.
+/// Returns how far the directions that `drawn` samples are from what the pdf of `claimed` says, in
+/// standard deviations of a chi-square above its mean; infinite for a
+/// direction where the pdf is 0. `jacobian` is a
+/// factor that the pdf ought not to have.
 double chi_square_sigmas(const LayeredBsdf& drawn, const LayeredBsdf& claimed, double theta,
                          double alpha, int count, double jacobian = 1.0) {
     const HalfVectorCells cells(alpha);
     const Vec3 w = at_degrees(theta);
     const std::vector<double> seen = found_cells(drawn, claimed, w, cells, count);
-    if (seen.empty()) {
+    if (seen.empty())
         return INFINITY;
-    }
     const std::vector<double> shares = cells.probabilities(claimed, w);
-    double chi = 0.0, rare_seen = 0.0, rare_wanted = 0.0;
-    int degrees = 0;
-    const auto add = [&](double found, double wanted) {
-        chi += (found - wanted) * (found - wanted) / wanted;
-        ++degrees;
-    };
-    for (std::size_t cell = 0; cell < shares.size(); ++cell) {
-        const double wanted = jacobian * shares[cell] * count;
-        if (wanted >= 10.0) {
-            add(seen[cell], wanted);
-        } else {
-            rare_seen += seen[cell];
-            rare_wanted += wanted;
-        }
-    }
-    if (rare_wanted > 0.0) {
-        add(rare_seen, std::max(rare_wanted, 10.0));
-    }
-    const double k = 2.0 / (9.0 * degrees);
-    return (std::cbrt(chi / degrees) - (1.0 - k)) / std::sqrt(k);
+    std::vector<double> expected;
+    for (const double share : shares)
+        expected.push_back(jacobian * share * count);
+    return test::chi_square_sigmas(seen, expected, false);
 }
 
 struct Case {
@@ -184,9 +155,8 @@ std::vector<Case> sampling_cases() {
             const LayerStack rough{{layer(1.5, alpha, d)}};
             const LayerStack two{{layer(1.5, alpha, d), layer(1.3, 0.3, d)}};
             const LayerStack smooth{{layer(1.5, 0.0, d)}};
-            if (d != Distribution::Blinn || degrees == 10.0) {
+            if (d != Distribution::Blinn || degrees == 10.0)
                 cases.push_back({name + ", adding", alpha, {rough, grey(0.5), one, Model::Adding}});
-            }
             cases.push_back({name + ", weidlich-wilkie",
                              alpha,
                              {two, grey(0.2, 0.4), one, Model::WeidlichWilkie}});
@@ -208,11 +178,10 @@ std::array<double, 2> sampled_albedo(const LayeredBsdf& bsdf, double theta, int 
         const double u0 = uniform(generator), u1 = uniform(generator), u2 = uniform(generator);
         const LayeredBsdf::Sample sample = bsdf.sample(w, {u0, u1, u2});
         double value = 0.0;
-        if (sample.is_delta) {
+        if (sample.is_delta)
             value = bsdf.delta(w.z).sum() / sample.pdf;
-        } else if (sample.w.z > 0.0) {
+        else if (sample.w.z > 0.0)
             value = bsdf.eval(w, sample.w).sum() * sample.w.z / sample.pdf;
-        }
         sum += value;
         squares += value * value;
     }
@@ -224,9 +193,9 @@ std::array<double, 2> sampled_albedo(const LayeredBsdf& bsdf, double theta, int 
 
 TEST(LayeredBsdf, SamplesFollowTheirPdf) {
     // 4 % of a lobe's width are seen in a normal run, 1.3 % in a full one
-    const int count = is_full_run() ? 500000 : 50000;
+    const int count = test::is_full_run() ? 500000 : 50000;
     const std::vector<Case> cases = sampling_cases();
-    const double bound = sidak_sigmas(static_cast<int>(cases.size()) * 4);
+    const double bound = test::sidak_bound(static_cast<int>(cases.size()) * 4);
     for (const Case& one_case : cases) {
         for (const double theta : {0.0, 45.0, 75.0, 89.0}) {
             EXPECT_LT(chi_square_sigmas(one_case.bsdf, one_case.bsdf, theta, one_case.alpha, count),
@@ -239,7 +208,7 @@ TEST(LayeredBsdf, SamplesFollowTheirPdf) {
 TEST(LayeredBsdf, AWidthOrAJacobianThatIsOnePercentOffFailsTheTest) {
     const LayeredBsdf right({}, metal(0.2), one, Model::WeidlichWilkie);
     const LayeredBsdf wrong({}, metal(0.202), one, Model::WeidlichWilkie);
-    const double bound = sidak_sigmas(1);
+    const double bound = test::sidak_bound(1);
     const int count = 3000000;
     EXPECT_LT(chi_square_sigmas(right, right, 45.0, 0.2, count), bound);
     EXPECT_GT(chi_square_sigmas(wrong, right, 45.0, 0.2, count), bound);
@@ -269,7 +238,7 @@ TEST(LayeredBsdf, SampledAlbedoIsTheHemisphericalMeasure) {
         {{{layer(1.5, 0.05, Distribution::Blinn)}}, metal(0.0), Model::WeidlichWilkie},
         {{{layer(1.4, 0.2, Distribution::Beckmann)}}, metal(0.3), Model::WeidlichWilkie},
     };
-    const double bound = sidak_sigmas(static_cast<int>(materials.size()) * 3);
+    const double bound = test::sidak_bound(static_cast<int>(materials.size()) * 3);
     for (std::size_t k = 0; k < materials.size(); ++k) {
         const auto& [stack, substrate, model] = materials[k];
         const LayeredBsdf bsdf(stack, substrate, one, model);
@@ -279,7 +248,8 @@ TEST(LayeredBsdf, SampledAlbedoIsTheHemisphericalMeasure) {
         for (const double theta : {0.0, 50.0, 85.0}) {
             request.theta_i_deg = {theta};
             const auto rows = measure_substrate(stack, substrate, one, request).rows;
-            const auto [mean, error] = sampled_albedo(bsdf, theta, is_full_run() ? 1000000 : 20000);
+            const auto [mean, error] =
+                sampled_albedo(bsdf, theta, test::is_full_run() ? 1000000 : 20000);
             // 1e-4 for the quadrature of the measure, 1e-3 for the lobes' fits in adding
             const double margin = model == Model::Adding ? 1e-3 : 1e-4;
             EXPECT_NEAR(mean, rows.at(0).value + rows.at(1).value, bound * error + margin)
@@ -304,9 +274,8 @@ TEST(LayeredBsdf, EvalIsWhatTheGoniophotometerSees) {
         request.theta_o_deg = {25};
         request.phi_deg = {150};
         Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(2, 2);
-        for (const MeasureRow& row : measure_substrate(stack, substrate, two, request).rows) {
+        for (const MeasureRow& row : measure_substrate(stack, substrate, two, request).rows)
             expected(row.lambda_o_nm > 450, row.lambda_i_nm > 450) += row.value;
-        }
         const Vec3 wo = direction_at(std::cos(25 * M_PI / 180), 150 * M_PI / 180);
         EXPECT_LT((bsdf.eval(at_degrees(40), wo) - expected).norm(), 1e-14);
         EXPECT_EQ(bsdf.eval(at_degrees(40), kernels::vec3(0, 0.6, -0.8)).norm(), 0.0);

@@ -1,5 +1,6 @@
-#include "host/error.h"
-#include "host/measure/measure.h"
+#include "host/measure/measure_substrate.h"
+#include "reradiant/error.h"
+#include "reradiant/measure.h"
 
 #include <gtest/gtest.h>
 
@@ -25,9 +26,8 @@ struct SmoothSlabs {
     double fresnel(std::size_t above, double q) const {
         const double n1 = ior[above], n2 = ior[above + 1];
         const double c1 = cosine(above, q), c2 = cosine(above + 1, q);
-        if (q >= n1 * n1 || q >= n2 * n2) {
+        if (q >= n1 * n1 || q >= n2 * n2)
             return 1.0;
-        }
         const double s = (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2);
         const double p = (n2 * c1 - n1 * c2) / (n2 * c1 + n1 * c2);
         return 0.5 * (s * s + p * p);
@@ -64,11 +64,9 @@ struct SmoothSlabs {
     double internal() const {
         const double n = ior.back();
         std::vector<double> edges{0.0, n * n};
-        for (const double other : ior) {
-            if (other < n) {
+        for (const double other : ior)
+            if (other < n)
                 edges.push_back(other * other);
-            }
-        }
         std::sort(edges.begin(), edges.end());
         double sum = 0.0;
         for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
@@ -207,11 +205,10 @@ TEST(Measure, HemisphericalRowsHoldTheMirrorAndConserveEnergy) {
             const double diffuse = result.rows[row].value;
             const double specular = result.rows[row + 3].value;
             EXPECT_NEAR(specular, cases[k].specular(result.rows[row].theta_i_deg), 1e-9);
-            if (lossless) {
+            if (lossless)
                 EXPECT_NEAR(diffuse + specular, 1.0, 1e-12);
-            } else {
+            else
                 EXPECT_LT(diffuse + specular, 1.0);
-            }
         }
     }
 }
@@ -249,9 +246,8 @@ TEST(Measure, WithoutFluorescenceEmissionIsExcitation) {
     const Measurement result =
         measure_stack({}, Eigen::MatrixXd(Eigen::Vector3d(0.1, 0.2, 0.3).asDiagonal()), grid, {});
     ASSERT_EQ(result.rows.size(), 6U);
-    for (const MeasureRow& row : result.rows) {
+    for (const MeasureRow& row : result.rows)
         EXPECT_EQ(row.lambda_i_nm, row.lambda_o_nm);
-    }
     EXPECT_NEAR(result.rows[1].value, 0.2 / M_PI, 1e-15);
 }
 

@@ -1,12 +1,14 @@
-#include "host/error.h"
-#include "host/layers/adding.h"
 #include "host/measure/lobe_quadrature.h"
-#include "host/measure/measure.h"
+#include "host/measure/measure_substrate.h"
 #include "host/measure/surface_angles.h"
-#include "kernels/microfacet.h"
-#include "kernels/oren_nayar.h"
-#include "tests/layers/private_cache.h"
+#include "kernels/scatter/microfacet.h"
+#include "kernels/scatter/oren_nayar.h"
+#include "reradiant/adding.h"
+#include "reradiant/error.h"
+#include "reradiant/measure.h"
+#include "tests/support/private_cache.h"
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +19,7 @@ using kernels::Vec3;
 
 namespace {
 
-const PrivateCache cache("measure-materials");
+const test::PrivateCache cache("measure-materials");
 const WavelengthGrid one{550, 10, 1};
 
 double cos_deg(double degrees) {
@@ -186,7 +188,7 @@ TEST(MeasureMaterials, Case17PerfectConductorsReflectEverything) {
         for (const double theta : {0.0, 45.0, 80.0}) {
             const double albedo =
                 whole({}, conductor(1e-9, 5.0, alpha), Model::WeidlichWilkie, theta).diffuse;
-            EXPECT_NEAR(albedo, 1.0, 1e-3) << alpha << " " << theta; // of lobe_albedo
+            EXPECT_NEAR(albedo, 1.0, 1e-3) << alpha << " " << theta; // the error of lobe_albedo
         }
     }
     const double single =
@@ -214,10 +216,9 @@ TEST(MeasureMaterials, AddingRefusesConductors) {
 
 TEST(MeasureMaterials, NumbersOutOfRangeAreRefusedByEveryModel) {
     const auto refused = [](const LayerStack& stack, const SubstrateValues& substrate) {
-        for (const Model model : {Model::WeidlichWilkie, Model::Walk}) {
+        for (const Model model : {Model::WeidlichWilkie, Model::Walk})
             EXPECT_THROW(measure_substrate(stack, substrate, one, hemispherical(model, {0})),
                          Error);
-        }
     };
     refused({}, conductor(0.4, -1.0, 0.1));
     refused({}, conductor(0.0, 1.0, 0.1));
@@ -249,9 +250,8 @@ TEST(LobeQuadrature, ResolvesLobesOfAnyWidth) {
                     -std::expm1(-1.0 / (alpha * alpha)), 1e-8)
             << alpha;
     }
-    for (const double alpha : {1e-4, 0.01}) { // too narrow for any to go down
+    for (const double alpha : {1e-4, 0.01}) // too narrow for any to go down
         EXPECT_NEAR(facets_above(alpha, direction_at(cos_deg(70), 0.7)), 1.0, 1e-8) << alpha;
-    }
 }
 
 TEST(LobeQuadrature, CoversTheHemisphereOnce) {

@@ -1,5 +1,6 @@
-# What pip installs, laid out as `pip install --target` does, works from where it lies: the program, found
-# by PATH, and the module both take the data that came with them, not those of the source tree.
+# The test shows that what pip installs, laid out as `pip install --target` does, works from where it
+# lies: the program, found by PATH, and the module both take the data that came with them, not those of
+# the source tree.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 set(prefix ${WORK}/prefix)

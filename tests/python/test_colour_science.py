@@ -1,4 +1,5 @@
-"""What reaches the package colour-science; stand-ins for it and OpenImageIO, which need not be there."""
+"""Tests of what reaches the package colour-science. It and OpenImageIO need not be there: the tests
+have stand-ins for them."""
 
 import sys
 import types

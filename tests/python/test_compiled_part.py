@@ -24,7 +24,7 @@ class CompiledPart(unittest.TestCase):
         shutil.copytree(PACKAGE, self.package, ignore=shutil.ignore_patterns("_library.*", "__pycache__"))
 
     def refused(self, words):
-        """What `import reradiant` of the copy says is an ImportError with these words."""
+        """Checks that `import reradiant` of the copy raises an ImportError with these words."""
         result = subprocess.run([sys.executable, "-B", "-c", "import reradiant"], cwd=self.folder,
                                 env={**os.environ, "PYTHONPATH": str(self.folder)},
                                 capture_output=True, text=True, check=False)

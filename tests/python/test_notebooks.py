@@ -9,7 +9,7 @@ from scenes import EXAMPLES
 
 
 def show(value):
-    """What a notebook asks of the last value of a cell."""
+    """Asks the last value of a cell for its display form, as a notebook does."""
     for name in ("_repr_html_", "_repr_png_"):
         method = getattr(value, name, None)
         if method is not None and method() is not None:

@@ -1,8 +1,8 @@
 #include "tests/render/kernel_sizes.h"
 
-#include "host/error.h"
+#include "reradiant/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 #include <cstdio>

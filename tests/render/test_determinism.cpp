@@ -35,7 +35,8 @@ TEST(Determinism, SameSeedGivesTheSameImageWhateverTheThreads) {
     EXPECT_EQ(rendered(options), reference);
 }
 
-/// As on a device with memory of its own: also where there is nothing to map, in the dark.
+/// A device with memory of its own maps its buffers, and has nothing to map in the dark: both give
+/// the image of shared memory.
 TEST(Determinism, MappedMemoryGivesTheImageOfSharedMemory) {
     const Device mapping("", false);
     EXPECT_FALSE(mapping.info().shares_memory);

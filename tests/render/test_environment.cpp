@@ -1,4 +1,4 @@
-#include "host/spectral/rgb_basis.h"
+#include "host/spectral/colour/rgb_basis.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -54,14 +54,14 @@ TEST(EnvironmentImage, ConstantImageIsTheConstantEnvironment) {
             const BandStatistics a = band_statistics(constant.image, band);
             const BandStatistics b = band_statistics(image.image, band);
             EXPECT_NEAR(a.mean, b.mean,
-                        sidak_sigmas(3 * bands.count) *
+                        test::sidak_bound(3 * bands.count) *
                                 std::hypot(a.standard_error, b.standard_error) +
                             1e-5);
         }
     }
 }
 
-/// What a camera at the origin sees in one direction.
+/// Returns the radiance by band that a camera at the origin sees in the direction `towards`.
 std::vector<double> seen(const Image& image, const Vector3& towards, double rotation_deg) {
     Scene scene = plane_scene(material({}, 0.5), 0.0, 2, 2);
     scene.shapes = {{SphereShape{{0, -1000, 0}, 1.0}, 0}}; // nothing in the way
@@ -128,7 +128,7 @@ TEST(EnvironmentImage, SunInATexelIsSampledAndLightsByItsSolidAngle) {
     for (int band = 0; band < bands.count; ++band) {
         const BandStatistics found = band_statistics(result.image, band);
         const double expected = irradiance / pi;
-        EXPECT_NEAR(found.mean, expected, sidak_sigmas(bands.count) * found.standard_error);
+        EXPECT_NEAR(found.mean, expected, test::sidak_bound(bands.count) * found.standard_error);
         // 4096 samples of a density that is constant on a texel under a hat: 0.7 / 64 at most.
         // Found by chance alone the texel would leave an error above the value itself.
         EXPECT_LT(found.standard_error, 0.02 * expected);

@@ -1,9 +1,12 @@
-// What a scene does not need costs nothing, and edits of numbers build nothing.
+// These tests show that what a scene does not need costs nothing, and that edits of numbers build
+// nothing.
+#include "host/device/opencl_device.h"
 #include "host/device/program.h"
-#include "host/render/render_features.h"
-#include "tests/full_run.h"
+#include "host/render/plan/render_features.h"
+#include "reradiant/reradiation.h"
 #include "tests/render/kernel_sizes.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -57,7 +60,9 @@ TEST(LeavingOut, EditsOfNumbersBuildNoKernel) {
     scene.lights.back() = RectangleLight{{1, 4, 1}, {1, 0, 0}, {0, 0, 1}, Spectrum::constant(2.0)};
     Material& edited = scene.materials.front();
     edited.stack.layers.front().absorption = Spectrum::constant(0.1);
-    edited.substrate.matrix->values *= 0.5;
+    ReradiationMatrix matrix = *edited.substrate.matrix;
+    matrix.values *= 0.5;
+    edited.substrate.matrix = std::make_shared<const ReradiationMatrix>(matrix);
     edited.substrate.reflectance = edited.substrate.matrix->reflectance();
     const RenderResult result = rendered(scene);
     EXPECT_EQ(result.build.built, 0);
@@ -69,7 +74,7 @@ TEST(LeavingOut, WhatIsOffTakesNoBuffersTablesOrBands) {
     const RenderResult all = rendered(lit_scene(material({}, 0.3)), true);
     EXPECT_LT(some.device_bytes, all.device_bytes);
     EXPECT_LT(some.build.binary_bytes,
-              all.build.binary_bytes * 3 / 5); // what is left: rays, sums, numbers
+              all.build.binary_bytes * 3 / 5); // rays, sums and numbers are left
     for (const char* name : {"fluorescence", "dense_matrix", "spectral_stack", "smooth", "rough",
                              "deeper_lobes", "walk", "textures", "lens"})
         EXPECT_FALSE(some.features.at(name)) << name;
@@ -129,10 +134,10 @@ TEST(LeavingOut, EveryBitAddsCodeAndNoneLeavesAnyWhenOff) {
         EXPECT_GT(preprocessed_bytes(RERADIANT_SOURCE_DIR, with(on)),
                   preprocessed_bytes(RERADIANT_SOURCE_DIR, before))
             << name;
-        if (std::find(few.begin(), few.end(), name) == few.end() && !is_full_run())
+        if (std::find(few.begin(), few.end(), name) == few.end() && !test::is_full_run())
             continue;
-        // What the compiler makes of more code may be a little less, by what it then inlines
-        // (0.4 % less with LLVM 18 for one bit): the program does not shrink by more than that.
+        // The compiler may make a little less of more code, by what it then inlines (0.4 % less
+        // with LLVM 18 for one bit): the program does not shrink by more than that.
         EXPECT_GT(1.02 * static_cast<double>(program_bytes(with(on))),
                   static_cast<double>(program_bytes(before)))
             << name;
@@ -146,13 +151,13 @@ TEST(BadDevice, NoDoubleIsNeededByAnyKernel) {
     for (const char* file :
          {"kernels/generate.cl", "kernels/shade.cl", "kernels/gather.cl", "kernels/film.cl"}) {
         const std::string source = kernel_source(RERADIANT_SOURCE_DIR, file, features.defines());
-        const cl::Program program(device().context(),
+        const cl::Program program(device().opencl().context,
                                   "#pragma OPENCL EXTENSION cl_khr_fp64 : disable\n" + source);
         try {
             program.compile("-cl-std=CL1.2 -Werror");
         } catch (const cl::Error&) {
             ADD_FAILURE() << file << '\n'
-                          << program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device().handle());
+                          << program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device().opencl().handle);
         }
     }
 }
@@ -165,7 +170,9 @@ TEST(BadDevice, Case38KernelsTakeNoLocalMemory) {
                                      {"kernels/shade.cl", "shade"},
                                      {"kernels/gather.cl", "gather"}}) {
         const Kernel kernel(build_program(device(), file, features.defines()), name, 8);
-        EXPECT_EQ(kernel.handle().getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device().handle()), 0U)
+        EXPECT_EQ(
+            kernel.handle().getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device().opencl().handle),
+            0U)
             << name;
     }
 }

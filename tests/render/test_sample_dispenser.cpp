@@ -1,4 +1,4 @@
-#include "host/render/sample_dispenser.h"
+#include "host/render/wavefront/sample_dispenser.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "host/layers/effective_matrix.h"
-#include "host/render/substrate_operator.h"
+#include "host/layers/models/effective_matrix.h"
+#include "host/render/tables/substrate_operator.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
-#include "host/render/scene_tables.h"
-#include "host/spectral/rgb_basis.h"
-#include "kernels/texture.h"
+#include "host/render/tables/scene_tables.h"
+#include "host/spectral/colour/rgb_basis.h"
+#include "kernels/scene/texture.h"
+#include "reradiant/scene_file.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +34,8 @@ Scene square_scene(std::vector<Material> materials) {
     return scene;
 }
 
-/// Where a point of the film, 0..1 from its upper left corner, lies: right is -x, up is +z.
+/// Returns the point of the square that a point of the film shows; x and y run from 0 to 1 from the
+/// upper left corner of the film, whose right is -x and whose up is +z.
 kernels::Vec3 on_square(double x, double y) {
     return kernels::vec3(1.0 - 2.0 * x, 0.0, 1.0 - 2.0 * y);
 }
@@ -88,7 +90,7 @@ void expect_mean(const Scene& scene, double expected, const char* what) {
             sum += reflectance_at(result, x, y) / (film * film);
     // pixels differ by more than chance: at most 1/4 is the variance of a number in 0..1
     variance = 0.25 / (film * film * 256);
-    EXPECT_NEAR(sum, expected, sidak_sigmas(4) * std::sqrt(variance)) << what;
+    EXPECT_NEAR(sum, expected, test::sidak_bound(4) * std::sqrt(variance)) << what;
 }
 
 TEST(Textures, CheckerHasBothMaterialsInTheirSquares) {

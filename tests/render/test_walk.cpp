@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/render/scene_tables.h"
+#include "host/render/tables/scene_tables.h"
+#include "reradiant/error.h"
 #include "tests/render/walk_strips.h"
 
 #include <gtest/gtest.h>
@@ -30,9 +30,10 @@ struct Comparison {
     }
 };
 
-/// What stacks show over a re-radiating substrate less what they show over a black one: `adding`
-/// has that exactly in every direction, while it spreads over directions what rough stacks reflect
-/// themselves. Smooth stacks are compared as they are, too.
+/// Compares the walk with `adding` by the radiance of stacks over a re-radiating substrate less
+/// that of the same stacks over a black one: `adding` has that exactly in every direction, while it
+/// spreads over directions what rough stacks reflect themselves. Smooth stacks are compared as they
+/// are, too.
 void expect_agreement_with_adding(const Lighting& lighting, std::uint32_t samples) {
     const std::vector<Stack> stacks = all_stacks();
     std::vector<Material> materials;
@@ -56,10 +57,10 @@ void expect_agreement_with_adding(const Lighting& lighting, std::uint32_t sample
             Comparison less_black = all;
             less_black.add(strip_statistics(walk.image, i + count, band), -1.0);
             less_black.add(strip_statistics(adding.image, i + count, band), 1.0);
-            less_black.expect_equal(sidak_sigmas(comparisons));
+            less_black.expect_equal(test::sidak_bound(comparisons));
             const bool is_smooth = material(stack.layers, 0.0).stack.is_smooth();
             if (is_smooth && !stack.layers.empty() && !stack.layers.front().scatters())
-                all.expect_equal(sidak_sigmas(comparisons));
+                all.expect_equal(test::sidak_bound(comparisons));
         }
 }
 
@@ -67,7 +68,7 @@ TEST(Walk, AgreesWithAddingUnderEveryLight) {
     expect_agreement_with_adding(every_light, 128);
 }
 TEST(Walk, AgreesWithAddingUnderEachLight) {
-    if (!is_full_run())
+    if (!test::is_full_run())
         GTEST_SKIP() << "in the full run only: each light by itself";
     for (const Light& light : every_light.lights)
         expect_agreement_with_adding({{light}}, 128);
@@ -92,7 +93,8 @@ TEST(Walk, WhiteFurnaceIsWhite) {
         // exact but for roulette of very long walks, and rounding
         const bool is_blinn = i + 1 == stacks.size();
         const double known_to = is_blinn ? 1e-3 : 1e-5;
-        EXPECT_NEAR(found.mean, 1.0, known_to + sidak_sigmas(comparisons) * found.standard_error)
+        EXPECT_NEAR(found.mean, 1.0,
+                    known_to + test::sidak_bound(comparisons) * found.standard_error)
             << stacks[i].name;
         // every walk weighs 1, but those of V-cavities, whose facets are masked
         EXPECT_LT(found.standard_error, is_blinn ? 5e-3 : 1e-3) << stacks[i].name;
@@ -141,9 +143,9 @@ TEST(Walk, MixturesAndTexturesAreTheMeanOfWhatTheyMix) {
         for (const int strip : {2, 3}) {
             const BandStatistics mixed = strip_statistics(result.image, strip, band);
             EXPECT_NEAR(mixed.mean, 0.5 * (a.mean + b.mean),
-                        sidak_sigmas(comparisons) * std::hypot(mixed.standard_error,
-                                                               0.5 * a.standard_error,
-                                                               0.5 * b.standard_error))
+                        test::sidak_bound(comparisons) * std::hypot(mixed.standard_error,
+                                                                    0.5 * a.standard_error,
+                                                                    0.5 * b.standard_error))
                 << "strip " << strip << ", band " << band;
         }
     }

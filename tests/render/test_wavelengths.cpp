@@ -1,7 +1,9 @@
-#include "host/measure/measure.h"
-#include "host/render/wavelength_plan.h"
+#include "reradiant/measure.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/wavelength_plan.h"
 #include "tests/render/test_scenes.h"
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +39,7 @@ TEST(WavelengthPlan, BandsThatNoLightReachesAreLeftOutAndNamed) {
     EXPECT_FALSE(plan.left_out.empty());
 }
 
-/// From one band into another, 10 nm wide.
+/// Returns a matrix that sends light from one band into another, both 10 nm wide.
 ReradiationMatrix step_matrix(double from_nm, double to_nm) {
     ReradiationMatrix matrix;
     matrix.emission = matrix.excitation = grid_from_range(380, 980, 10);
@@ -68,15 +70,15 @@ TEST(WavelengthPlan, AntiStokesStepsInARowReachTheFilm) {
     const WavelengthPlan plan = plan_wavelengths(scene, grid_from_range(380, 780, 10), {});
     EXPECT_LE(plan.comb.from_nm, 700.0);
     EXPECT_GE(plan.comb.to_nm(), 900.0);
-    // Where light is emitted above its excitation only, nothing above the film can be seen.
+    // This matrix emits only above its excitation, so that nothing above the film can be seen.
     const Scene stokes = lit_by(Spectrum::constant(1.0), fluorescent({}, step_matrix(400, 900)));
     EXPECT_DOUBLE_EQ(plan_wavelengths(stokes, grid_from_range(380, 780, 10), {}).comb.to_nm(),
                      780.0);
 }
 
 TEST(WavelengthPlan, AntiStokesLightOfTwoStepsIsRendered) {
-    // Under a coat of n = 1.5 over a Lambertian substrate, against the goniophotometer, all models
-    // and samplers of wavelengths that render it.
+    // The matrix lies under a coat of n = 1.5 as a Lambertian substrate; all models and samplers of
+    // wavelengths that render it are compared with the goniophotometer.
     ReradiationMatrix matrix = step_matrix(900, 800);
     matrix.values(matrix.emission.band_of(700), matrix.excitation.band_of(800)) = 0.5;
     Material coated = fluorescent({}, matrix);
@@ -85,7 +87,7 @@ TEST(WavelengthPlan, AntiStokesLightOfTwoStepsIsRendered) {
     request.hemispherical = true;
     request.theta_i_deg = {20}; // as the camera sees it: directions may be swapped
     request.model = Model::Adding;
-    double expected = 0.0; // what leaves at 700 nm per irradiance at 900 nm
+    double expected = 0.0; // share of the irradiance at 900 nm that leaves at 700 nm
     for (const MeasureRow& row : measure_material(coated, request).rows)
         if (row.lambda_i_nm == 900.0 && row.lambda_o_nm == 700.0)
             expected = row.value;

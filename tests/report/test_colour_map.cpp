@@ -1,5 +1,5 @@
 #include "host/report/colour_map.h"
-#include "host/spectral/colour.h"
+#include "reradiant/colour.h"
 
 #include <gtest/gtest.h>
 

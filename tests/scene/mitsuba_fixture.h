@@ -2,7 +2,8 @@
 
 #include "tests/scene/scratch.h"
 
-#include "host/scene/mitsuba_import.h"
+#include "host/scene/mitsuba/mitsuba_import.h"
+#include "reradiant/scene_file.h"
 
 #include <string>
 

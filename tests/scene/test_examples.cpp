@@ -1,3 +1,4 @@
+#include "reradiant/scene_file.h"
 #include "tests/scene/scratch.h"
 
 #include <cmath>
@@ -37,7 +38,7 @@ double view_angle_deg(const RectangleShape& r, const Vector3& camera) {
     const Vector3 &u = r.edge_u, &v = r.edge_v;
     const Vector3 n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
                     u[0] * v[1] - u[1] * v[0]};
-    const Vector3 to{camera[0] - r.center[0], camera[1] - r.center[1], camera[2] - r.center[2]};
+    const Vector3 to{camera[0] - r.centre[0], camera[1] - r.centre[1], camera[2] - r.centre[2]};
     const double cosine = (n[0] * to[0] + n[1] * to[1] + n[2] * to[2]) / (length(n) * length(to));
     return std::acos(cosine) * 180.0 / std::acos(-1.0);
 }

@@ -1,5 +1,6 @@
-#include "host/scene/image_io.h"
-#include "host/spectral/colour.h"
+#include "host/scene/images/image_io.h"
+#include "reradiant/colour.h"
+#include "reradiant/scene_file.h"
 #include "tests/scene/scratch.h"
 
 #include <ImfChannelList.h>

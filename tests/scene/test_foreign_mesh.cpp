@@ -1,4 +1,4 @@
-#include "host/scene/mesh_io.h"
+#include "host/scene/meshes/mesh_io.h"
 #include "tests/scene/scratch.h"
 
 #include <Eigen/Geometry>
@@ -79,7 +79,7 @@ TEST(ForeignObj, Case70ConcaveFacesHaveTheirArea) {
                  "v 0.58779 -0.80902 0\nv 0.0 -0.4 0\nv -0.58779 -0.80902 0\n"
                  "v -0.38042 -0.12361 0\nv -0.95106 0.30902 0\nv -0.23511 0.32361 0\n"
                  "f 1 2 3 4 5 6 7 8 9 10\n");
-    // By the shoelace formula from the coordinates above.
+    // The area is that of the shoelace formula for the coordinates above.
     EXPECT_NEAR(area_of(star), 1.1755734, 1e-6);
     const Caught error =
         error_of([&] { parse_mesh("a.obj", TRIANGLE + "v 3 3 0\nf 1 2 3\nf 1 4 2 3\n"); });
@@ -92,7 +92,7 @@ TEST(ForeignObj, StatementsGoOnAfterABackslash) {
     expect_same(
         parse_mesh("a.obj", "v -1 \\\n -1 0\nv 1 -1\\\n0\nv 0 1 0\ng a \\\nb\nf 1 \\\n2 \\\r\n 3"),
         wanted);
-    // In a comment it means nothing.
+    // In a comment a backslash means nothing.
     expect_same(parse_mesh("a.obj", "# a path\\\n" + TRIANGLE + "f 1 2 3 # so \\\n"), wanted);
     const Caught error = error_of([&] { parse_mesh("a.obj", TRIANGLE + "f 1 \\\n2 \\\n 9\n"); });
     EXPECT_EQ(error.line, 6);

@@ -1,6 +1,7 @@
 #include "tests/scene/scratch.h"
 
 #include "host/film/png.h"
+#include "reradiant/scene_file.h"
 
 #include <cmath>
 

@@ -1,4 +1,5 @@
-#include "host/scene/load_state.h"
+#include "host/scene/toml/load_state.h"
+#include "reradiant/scene_file.h"
 #include "tests/scene/scratch.h"
 
 #include <chrono>

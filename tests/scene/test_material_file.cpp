@@ -1,3 +1,5 @@
+#include "reradiant/reradiation.h"
+#include "reradiant/scene_file.h"
 #include "tests/scene/scratch.h"
 
 using namespace reradiant;
@@ -46,7 +48,7 @@ TEST_F(MaterialFile, FluorophoresAreRead) {
     EXPECT_EQ(substrate.fluorophores[0].quantum_yield, 0.9);
     EXPECT_NEAR(substrate.fluorophores[0].excitation(400.0), 0.8, 1e-15);
     EXPECT_EQ(substrate.reflectance(500.0), 0.1);
-    EXPECT_FALSE(substrate.matrix.has_value());
+    EXPECT_FALSE(substrate.matrix);
     EXPECT_TRUE(substrate.is_fluorescent());
 }
 
@@ -57,7 +59,7 @@ TEST_F(MaterialFile, AMatrixFileGivesMatrixAndReflectance) {
         load_material(write("m.toml", "[material]\nsubstrate = { type = \"lambert\", reradiation = "
                                       "{ file = \"m.csv\" } }\n"))
             .substrate;
-    ASSERT_TRUE(substrate.matrix.has_value());
+    ASSERT_TRUE(substrate.matrix);
     EXPECT_EQ(substrate.reflectance(410.0), 0.4);
     EXPECT_EQ(substrate.matrix->values(2, 0), 0.2);
     EXPECT_TRUE(substrate.is_fluorescent());

@@ -1,4 +1,4 @@
-#include "host/scene/mesh_io.h"
+#include "host/scene/meshes/mesh_io.h"
 #include "tests/scene/scratch.h"
 
 #include <algorithm>

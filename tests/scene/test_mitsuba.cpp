@@ -1,6 +1,7 @@
 #include "tests/scene/mitsuba_fixture.h"
 
-#include "host/spectral/colour.h"
+#include "reradiant/colour.h"
+#include "reradiant/scene_file.h"
 
 #include <cmath>
 #include <numbers>

@@ -14,8 +14,8 @@ TEST_F(MitsubaShapes, StepsOfATransformAreAppliedInTheirOrder) {
 <transform name="to_world"><translate x="1"/><scale value="3"/><rotate y="1" angle="90"/></transform>
 </shape>)");
     const auto& sphere = std::get<SphereShape>(scene.shapes.at(0).geometry);
-    EXPECT_NEAR(sphere.center[0], 0.0, 1e-12);
-    EXPECT_NEAR(sphere.center[2], -3.0, 1e-12); // +x turned about +y by 90 degrees is -z
+    EXPECT_NEAR(sphere.centre[0], 0.0, 1e-12);
+    EXPECT_NEAR(sphere.centre[2], -3.0, 1e-12); // +x turned about +y by 90 degrees is -z
     EXPECT_NEAR(sphere.radius, 6.0, 1e-12);
 }
 
@@ -43,7 +43,7 @@ TEST_F(MitsubaShapes, Disk) {
     const auto& disk = std::get<DiskShape>(scene.shapes.at(0).geometry);
     EXPECT_NEAR(disk.radius, 2.0, 1e-12);
     EXPECT_NEAR(disk.normal[1], 1.0, 1e-12);
-    EXPECT_NEAR(disk.center[1], 1.0, 1e-12);
+    EXPECT_NEAR(disk.centre[1], 1.0, 1e-12);
 }
 
 TEST_F(MitsubaShapes, MeshesAreMoved) {
@@ -66,9 +66,9 @@ TEST_F(MitsubaShapes, CubesAreSixRectanglesThatFaceOutwards) {
     for (const Shape& shape : scene.shapes) {
         const auto& face = std::get<RectangleShape>(shape.geometry);
         const Vector3 &u = face.edge_u, &v = face.edge_v;
-        const double outwards = (u[1] * v[2] - u[2] * v[1]) * face.center[0] +
-                                (u[2] * v[0] - u[0] * v[2]) * (face.center[1] - 1.0) +
-                                (u[0] * v[1] - u[1] * v[0]) * face.center[2];
+        const double outwards = (u[1] * v[2] - u[2] * v[1]) * face.centre[0] +
+                                (u[2] * v[0] - u[0] * v[2]) * (face.centre[1] - 1.0) +
+                                (u[0] * v[1] - u[1] * v[0]) * face.centre[2];
         EXPECT_NEAR(outwards, 16.0 / 2.0,
                     1e-12); // distance times area, a sixth of thrice the volume
     }
@@ -82,7 +82,7 @@ TEST_F(MitsubaShapes, MeshOfOneParallelogramEmits) {
 <emitter type="area" id="lamp"/>)";
     const Scene scene = load(testing::replaced(shape, "NAME", "lamp.obj"));
     const auto& light = std::get<RectangleLight>(scene.lights.at(0));
-    EXPECT_EQ(light.center, (Vector3{1, 5, 0.5}));
+    EXPECT_EQ(light.centre, (Vector3{1, 5, 0.5}));
     EXPECT_EQ(light.edge_u, (Vector3{2, 0, 0}));
     EXPECT_EQ(light.edge_v, (Vector3{0, 0, 1}));
     EXPECT_NE(refusal(testing::replaced(shape, "NAME", "kite.obj")).text.find("parallelogram"),

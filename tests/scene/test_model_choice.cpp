@@ -1,4 +1,4 @@
-#include "host/scene/model_choice.h"
+#include "host/scene/model/model_choice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 #include "tests/scene/scratch.h"
 
-#include "host/spectral/kubelka_munk.h"
+#include "host/spectral/matrix/kubelka_munk.h"
+#include "reradiant/scene_file.h"
 
 using namespace reradiant;
 using namespace reradiant::testing;
@@ -49,13 +50,13 @@ TEST_F(Pigments, AThinLayerShowsItsBacking) {
 
 TEST_F(Pigments, ADyeGivesAMatrix) {
     const Substrate glowing = substrate(WHITE + DYE);
-    ASSERT_TRUE(glowing.matrix.has_value());
+    ASSERT_TRUE(glowing.matrix);
     EXPECT_TRUE(glowing.is_fluorescent());
     EXPECT_EQ(glowing.matrix->emission, grid_from_range(300.0, 780.0, 5.0));
     EXPECT_GT(glowing.matrix->values(glowing.matrix->emission.band_of(540.0),
                                      glowing.matrix->excitation.band_of(450.0)),
               0.0);
-    // Where the dye neither absorbs nor emits only the pigment is left.
+    // At 700 nm the dye neither absorbs nor emits, and only the pigment is left.
     EXPECT_NEAR(glowing.reflectance(700.0),
                 kubelka_munk_reflectance(1.0, 40.0, PigmentLayer::OPAQUE, 0.0), 1e-9);
     // Without emission, or without any of it, the dye absorbs and nothing more.
@@ -67,7 +68,7 @@ TEST_F(Pigments, ADyeGivesAMatrix) {
                                            : "quantum_yield = 0.8, concentration = 0.5",
                                        change));
         EXPECT_FALSE(dark.is_fluorescent());
-        EXPECT_FALSE(dark.matrix.has_value());
+        EXPECT_FALSE(dark.matrix);
     }
 }
 

@@ -1,4 +1,4 @@
-#include "host/scene/polygon.h"
+#include "host/scene/meshes/polygon.h"
 
 #include <gtest/gtest.h>
 

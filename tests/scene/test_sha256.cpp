@@ -1,4 +1,4 @@
-#include "host/scene/sha256.h"
+#include "host/scene/model/sha256.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 #include "tests/scene/scratch.h"
 
-#include "host/spectral/colour.h"
+#include "reradiant/colour.h"
+#include "reradiant/scene_file.h"
 
 #include <cmath>
 
@@ -118,7 +119,7 @@ TEST_F(SpectrumForms, PeaksOfAnotherUnitAreRefusedAtTheirKey) {
     EXPECT_EQ(error_column("{ gaussian_nm = 5200, sigma_nm = 20 }", "cannot be in nm"), 14);
     EXPECT_EQ(error_column("[{ line_nm = 546 }, { line_nm = 40.5 }]", "cannot be in nm"), 34);
     EXPECT_EQ(read("[{ line_nm = 546 }, { line_nm = 1014 }]")(546.0), 1.0);
-    // Their flanks are seen.
+    // The flanks of peaks beyond 1000 nm are seen.
     EXPECT_GT(read("{ gaussian_nm = 1100, sigma_nm = 50 }")(1000.0), 0.0);
     EXPECT_GT(read("{ line_nm = 1010, width_nm = 40 }")(995.0), 0.0);
 }

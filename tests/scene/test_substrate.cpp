@@ -1,5 +1,8 @@
-#include "host/scene/scene.h"
+#include "host/scene/model/substrate.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/scene.h"
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +20,21 @@ Substrate small_matrix() {
     matrix.values(2, 0) = 0.25;
     Substrate substrate;
     substrate.reflectance = matrix.reflectance();
-    substrate.matrix = matrix;
+    substrate.matrix = std::make_shared<const ReradiationMatrix>(matrix);
     return substrate;
+}
+
+/// The matrix of a substrate, edited.
+template <typename Edit>
+Substrate edited(Substrate substrate, const Edit& edit) {
+    ReradiationMatrix matrix = *substrate.matrix;
+    edit(matrix);
+    substrate.matrix = std::make_shared<const ReradiationMatrix>(matrix);
+    return substrate;
+}
+
+Substrate with_emission(const Substrate& substrate, const WavelengthGrid& emission) {
+    return edited(substrate, [&](ReradiationMatrix& matrix) { matrix.emission = emission; });
 }
 
 Substrate fluorophore(double quantum_yield) {
@@ -34,8 +50,8 @@ Substrate fluorophore(double quantum_yield) {
 TEST(Substrate, IsFluorescentOnlyWhenWavelengthsShift) {
     EXPECT_FALSE(Substrate{}.is_fluorescent());
     EXPECT_TRUE(small_matrix().is_fluorescent());
-    Substrate grey = small_matrix();
-    grey.matrix->values(2, 0) = 0.0;
+    const Substrate grey =
+        edited(small_matrix(), [](ReradiationMatrix& matrix) { matrix.values(2, 0) = 0.0; });
     EXPECT_FALSE(grey.is_fluorescent());
     EXPECT_TRUE(fluorophore(0.5).is_fluorescent());
     EXPECT_FALSE(fluorophore(0.0).is_fluorescent());
@@ -65,27 +81,27 @@ TEST(Substrate, ExcitationAboveEveryEmissionDoesNotCount) {
 TEST(Substrate, OwnGridIsTheUnionWhenTheStepsAgree) {
     Substrate substrate = small_matrix();
     EXPECT_EQ(*substrate.own_grid(), grid_from_range(400, 420, 10));
-    substrate.matrix->emission = grid_from_range(420, 440, 10);
+    substrate = with_emission(substrate, grid_from_range(420, 440, 10));
     EXPECT_EQ(*substrate.own_grid(), grid_from_range(400, 440, 10));
-    substrate.matrix->emission = grid_from_range(425, 445, 10);
+    substrate = with_emission(substrate, grid_from_range(425, 445, 10));
     EXPECT_FALSE(substrate.own_grid().has_value());
-    substrate.matrix->emission = grid_from_range(420, 430, 5);
+    substrate = with_emission(substrate, grid_from_range(420, 430, 5));
     EXPECT_FALSE(substrate.own_grid().has_value());
     EXPECT_FALSE(fluorophore(1.0).own_grid().has_value());
 }
 
 TEST(Substrate, FluorescenceOnItsOwnCellsIsTheMatrixWithoutReflectance) {
-    const Eigen::MatrixXd cells = small_matrix().fluorescence_on(grid_from_range(400, 420, 10));
+    const Eigen::MatrixXd cells = fluorescence_of(small_matrix(), grid_from_range(400, 420, 10));
     Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3, 3);
     expected(2, 0) = 0.25;
-    // The same cells: overlaps are whole cells, exact to rounding.
+    // Both grids have the same cells: overlaps are whole cells, exact to rounding.
     EXPECT_LE((cells - expected).cwiseAbs().maxCoeff(), 1e-14);
 }
 
 TEST(Substrate, FluorophoresConservePhotonsOnAnyCells) {
     for (const double step : {5.0, 10.0, 20.0}) {
         const WavelengthGrid grid = grid_from_range(300, 780, step);
-        const Eigen::MatrixXd cells = fluorophore(0.9).fluorescence_on(grid);
+        const Eigen::MatrixXd cells = fluorescence_of(fluorophore(0.9), grid);
         double absorbed = 0.0, emitted = 0.0;
         for (int i = 0; i < grid.count; ++i) {
             absorbed += 0.9 * step *
@@ -97,7 +113,7 @@ TEST(Substrate, FluorophoresConservePhotonsOnAnyCells) {
         // Cell centres stand for the cells: second order in step over wavelength, (20/400)^2.
         EXPECT_NEAR(emitted / absorbed, 1.0, 2e-3) << step;
     }
-    EXPECT_EQ(Substrate{}.fluorescence_on(grid_from_range(400, 420, 10)).norm(), 0.0);
+    EXPECT_EQ(fluorescence_of(Substrate{}, grid_from_range(400, 420, 10)).norm(), 0.0);
 }
 
 TEST(Models, NamesGoBothWays) {

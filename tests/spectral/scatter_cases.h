@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/reradiation.h"
+#include "reradiant/reradiation.h"
 
 #include <algorithm>
 #include <cmath>

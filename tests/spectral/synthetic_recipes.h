@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/reradiation.h"
+#include "reradiant/reradiation.h"
 
 #include <cmath>
 #include <functional>
@@ -9,9 +9,9 @@
 
 namespace reradiant {
 
-/// How the matrices in spectra/reradiation were made: one fluorophore with a skewed emission
-/// band (two half Gaussians), an absorption that ends in a logistic edge, and a reflectance that
-/// takes no light the fluorophore has taken.
+/// A `SyntheticRecipe` says how one of the matrices in spectra/reradiation was made: one
+/// fluorophore with a skewed emission band (two half Gaussians), an absorption that ends in a
+/// logistic edge, and a reflectance that takes no light the fluorophore has taken.
 struct SyntheticRecipe {
     std::string file;
     double emission_peak_nm, sigma_blue_nm, sigma_red_nm;

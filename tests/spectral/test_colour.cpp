@@ -1,4 +1,4 @@
-#include "host/spectral/colour.h"
+#include "reradiant/colour.h"
 
 #include <gtest/gtest.h>
 

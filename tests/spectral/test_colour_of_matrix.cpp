@@ -1,8 +1,8 @@
-#include "host/spectral/colour_of_matrix.h"
-#include "host/spectral/matrix_io.h"
+#include "reradiant/colour_of_matrix.h"
+#include "reradiant/reradiation_file.h"
 #include "tests/spectral/synthetic_recipes.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -82,9 +82,10 @@ TEST(ColourOfMatrix, WhitenessAgreesWithColourScience) {
     EXPECT_TRUE(white.within_limits);
 }
 
-// Against the weights that colour-science 0.4.7 makes by ASTM E2022 for the same 10 nm bands, from
-// its illuminants interpolated linearly to 1 nm as CIE 15 asks, A from its formula (our table of A
-// has six digits, hence its tolerance). Both sums run from 360 to 780 nm.
+// The expected colours are those of the weights that colour-science 0.4.7 makes by ASTM E2022 for
+// the same 10 nm bands, from its illuminants interpolated linearly to 1 nm as CIE 15 asks, A from
+// its formula (our table of A has six digits, hence its tolerance). Both sums run from 360 to 780
+// nm.
 TEST(ColourOfMatrix, E308AgreesWithColourScienceForReflection) {
     const std::array<Xyz, 4> expected = {Xyz{62.208689, 34.721118, 1.453616},
                                          {40.74055, 24.734362, 4.379319},
@@ -169,7 +170,7 @@ TEST(ColourOfMatrix, BandsThatMissALineMissNoneOfIt) {
             EXPECT_TRUE(colour.at_nanometres);
             EXPECT_NEAR(colour.xyz[1], 100.0 * parabola(centre), 0.15) << centre << " " << width;
         }
-    // The same line in a table of finer steps than 1 nm.
+    // The table has the line at 546.1 nm too, in steps finer than 1 nm.
     const Spectrum table =
         Spectrum::table({400.0, 546.0, 546.1, 546.2, 700.0}, {0.0, 0.0, 1.0, 0.0, 0.0});
     EXPECT_NEAR(colour_of_matrix(paint, table, ColourSum::Automatic).xyz[1],
@@ -281,7 +282,7 @@ TEST(ColourOfMatrix, WarnsOfWhiteThatTheBandsDoNotSee) {
     const auto warnings = colour_warnings(cut, illuminant("E"), "E");
     ASSERT_EQ(warnings.size(), 1u);
     const ColourMatching& eye = cie_1931_2_degree();
-    double beyond = 0.0, whole = 0.0; // of X, of which most lies in the red
+    double beyond = 0.0, whole = 0.0; // sums of X, most of which lies in the red
     for (std::size_t k = 0; k <= 420; ++k) {
         whole += eye.x[k];
         if (k > 205 || k < 15)

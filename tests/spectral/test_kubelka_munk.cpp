@@ -1,4 +1,4 @@
-#include "host/spectral/kubelka_munk.h"
+#include "host/spectral/matrix/kubelka_munk.h"
 
 #include <gtest/gtest.h>
 
@@ -36,8 +36,8 @@ PigmentLayer overlapping(double thickness, const Spectrum& backing) {
     return layer;
 }
 
-/// The same layer by the fluxes' own differential equations: the state (I, J) is carried through
-/// the layer by Runge and Kutta, and the boundary conditions are solved for.
+/// Returns the matrix of a layer by the fluxes' own differential equations: the state (I, J) is
+/// carried through the layer by Runge and Kutta, and the boundary conditions are solved for.
 Eigen::MatrixXd by_integration(const PigmentLayer& layer, int steps) {
     const int n = GRID.count;
     Eigen::MatrixXd emission = Eigen::MatrixXd::Zero(n, n), loss(n, n), gain(n, n);

@@ -1,7 +1,8 @@
-#include "host/error.h"
-#include "host/spectral/matrix_io.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/spectrum_file.h"
 #include "tests/spectral/refusal.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 #include <algorithm>
 
@@ -9,8 +10,9 @@ using namespace reradiant;
 
 namespace {
 
-/// What the '#' lines and headings of a re-radiation CSV say, as people and spreadsheets write it.
-class MatrixHeaders : public ScratchFolder {
+/// These tests read the '#' lines and headings of a re-radiation CSV as people and spreadsheets
+/// write them.
+class MatrixHeaders : public test::ScratchFolder {
 protected:
     ReradiationMatrix read(const std::string& text) const {
         return read_reradiation(write("m.csv", text));
@@ -62,7 +64,7 @@ TEST_F(MatrixHeaders, KeysAndValuesAreReadInAnyCase) {
               (std::pair{3, 3}));
     EXPECT_EQ(refused(head + "# orientaion: rows-emission\n" + body, "did you mean 'orientation'"),
               (std::pair{3, 3}));
-    // What no key resembles is a remark.
+    // A line that resembles no key is a remark.
     EXPECT_EQ(read(head + "# source: a lab\n# scale: linear\n# licence = CC0\n# note\n" + body)
                   .values(0, 0),
               0.3);

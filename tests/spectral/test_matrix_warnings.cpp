@@ -1,7 +1,8 @@
-#include "host/spectral/matrix_evidence.h"
-#include "host/spectral/matrix_io.h"
-#include "host/spectral/matrix_warnings.h"
-#include "tests/spectral/scratch_folder.h"
+#include "host/base/output_ending.h"
+#include "host/spectral/evidence/matrix_evidence.h"
+#include "host/spectral/evidence/matrix_warnings.h"
+#include "reradiant/reradiation_file.h"
+#include "tests/support/scratch_folder.h"
 
 #include <cmath>
 #include <random>
@@ -15,7 +16,8 @@ ReradiationMatrix shipped(const std::string& name) {
                             "reradiation" / name);
 }
 
-/// As it is read where its off-diagonal values are `factor` times what they should be.
+/// Returns the matrix as it is read where its off-diagonal values are `factor` times what they
+/// should be.
 ReradiationMatrix scaled(ReradiationMatrix matrix, double factor) {
     for (int i = 0; i < matrix.excitation.count; ++i)
         for (int o = 0; o < matrix.emission.count; ++o)

@@ -1,5 +1,5 @@
-#include "host/spectral/colour_of_matrix.h"
-#include "host/spectral/matrix_io.h"
+#include "reradiant/colour_of_matrix.h"
+#include "reradiant/reradiation_file.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,8 @@
 
 using namespace reradiant;
 
-// Against measurements with a Labsphere BFC-450 that lie beside the source tree, where they are.
+// These tests compare with measurements by a Labsphere BFC-450. The data lie beside the source
+// tree; where they are absent the tests are skipped.
 
 namespace {
 
@@ -82,7 +83,7 @@ TEST_F(MeasuredData, FewTermsFitTheMeasurementsToTheirNoise) {
         const char* name;
         double rank_1, rank_3;
     };
-    // From independent fits, three decimals.
+    // The errors are those of independent fits, to three decimals.
     for (const Known& known : {Known{"HERPIORA", 0.056, 0.033}, {"CIBA12", 0.068, 0.037}}) {
         const Eigen::MatrixXd square = beyond_10_nm(read(known.name));
         EXPECT_NEAR(factorise_lower(square, 1, 0.0).relative_error, known.rank_1, 0.002);

@@ -1,7 +1,8 @@
-#include "host/spectral/matrix_io.h"
-#include "host/spectral/undeclared_table.h"
+#include "host/spectral/evidence/undeclared_table.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/spectrum_file.h"
 #include "tests/spectral/refusal.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 #include <algorithm>
 
@@ -10,7 +11,7 @@ using namespace reradiant;
 namespace {
 
 /// Tables of numbers as spreadsheets and instruments export them, without a word of what they are.
-class PlainTables : public ScratchFolder {
+class PlainTables : public test::ScratchFolder {
 protected:
     ReradiationMatrix read(const std::string& text, const TableWords& words) const {
         return read_reradiation(write("m.csv", text), Gaps::Refused, table_form(words));
@@ -194,7 +195,7 @@ TEST_F(PlainTables, AnUndeclaredTableIsToldTheCommandThatDeclaresIt) {
     refused(percent, "add above the table '# quantity: per-band', '# orientation: rows-emission', "
                      "'# unit: percent'");
     refused(percent, "the orientation of the table is not declared", {.quantity = "per-band"});
-    // What nothing speaks for is a choice.
+    // Nothing speaks for either orientation of this table: the user is given the choice.
     refused("nm,400,410\n400,0.3,0\n410,0,0.4\n", "'--rows excitation' where");
     EXPECT_TRUE(holds_reradiation(write("m.csv", percent)));
     EXPECT_EQ(refusal([&] { read_spectrum(write("m.csv", percent)); }, "re-radiation matrix"),
@@ -237,7 +238,7 @@ TEST_F(PlainTables, TheLongFormNeedsNoOrientationAndMayStateItsUnit) {
 TEST_F(PlainTables, WhatTheProposedCommandWouldRefuseIsSaidAtOnce) {
     refused("nm,400,410,420\n400,0,25,0,0,0,0\n410,0,02,0,5,0,0\n420,0,12,0,03,0,75\n",
             "save the sheet with semicolons or tabs");
-    // What was said already is part of the proposal.
+    // The options that the user gave already are part of the proposal.
     TableWords words{.scale = "0.01"};
     words.anti_stokes = true;
     words.geometry = "45/0";

@@ -1,4 +1,4 @@
-#include "host/spectral/reradiation.h"
+#include "reradiant/reradiation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "host/spectral/rgb_basis.h"
+#include "host/spectral/colour/rgb_basis.h"
 
-#include "host/spectral/colour.h"
+#include "reradiant/colour.h"
 
 #include <gtest/gtest.h>
 

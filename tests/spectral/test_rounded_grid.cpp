@@ -1,4 +1,4 @@
-#include "host/spectral/rounded_grid.h"
+#include "host/spectral/spectrum/rounded_grid.h"
 
 #include <gtest/gtest.h>
 

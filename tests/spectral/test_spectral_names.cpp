@@ -1,4 +1,4 @@
-#include "host/spectral/spectral_names.h"
+#include "host/spectral/spectrum/spectral_names.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "host/spectral/spectrum.h"
+#include "reradiant/spectrum.h"
 
 #include <gtest/gtest.h>
 

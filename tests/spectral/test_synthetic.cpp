@@ -1,6 +1,6 @@
-#include "host/paths.h"
-#include "host/spectral/colour.h"
-#include "host/spectral/matrix_io.h"
+#include "reradiant/colour.h"
+#include "reradiant/paths.h"
+#include "reradiant/reradiation_file.h"
 #include "tests/spectral/synthetic_recipes.h"
 
 #include <gtest/gtest.h>

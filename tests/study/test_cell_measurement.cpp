@@ -1,6 +1,6 @@
-#include "host/study/cell_measurement.h"
+#include "host/study/study/cell_measurement.h"
 
-#include "host/spectral/colour.h"
+#include "reradiant/colour.h"
 
 #include <gtest/gtest.h>
 
@@ -37,8 +37,9 @@ TEST(CellMeasurement, PerfectDiffuserHasTheWhiteOfTheLamp) {
         EXPECT_NEAR(value, 1.0, 1e-9) << "a diffuser looks alike from everywhere";
 }
 
-// What the dye absorbs it re-radiates with its yield; the rest is reflected. 2 %: bands of 10 nm
-// keep what is emitted within the band of the excitation on the diagonal.
+// Light that the dye absorbs is re-radiated with its yield; the rest is reflected. The bound of 2 %
+// is for bands of 10 nm, which keep what is emitted within the band of the excitation on the
+// diagonal.
 TEST(CellMeasurement, QuantumYieldOfABareDyeIsItsOwn) {
     Material material = bare(0.0);
     material.substrate.fluorophores = {

@@ -1,4 +1,4 @@
-#include "host/study/error_curve.h"
+#include "host/study/converge/error_curve.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "host/study/render_method.h"
+#include "host/study/converge/render_method.h"
 
-#include "host/error.h"
+#include "reradiant/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #include "host/film/png.h"
 #include "host/report/data_uri.h"
 #include "host/report/polar_plot.h"
-#include "host/study/contact_sheet.h"
-#include "host/study/study_page.h"
-#include "host/study/study_store.h"
+#include "host/study/study/contact_sheet.h"
+#include "host/study/study/study_page.h"
+#include "host/study/study/study_store.h"
 #include "tests/study/study_fixtures.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-#include "host/spectral/colour.h"
-#include "host/study/sweep_apply.h"
+#include "host/study/study/sweep_apply.h"
+#include "reradiant/colour.h"
 #include "tests/study/study_fixtures.h"
 
 #include <cmath>
@@ -38,12 +38,12 @@ TEST_F(Sweeps, AngleTiltsTheSampleAndKeepsTheLampInItsMirrorDirection) {
     const double normal_y = -sample.edge_u[0] * sample.edge_v[2];
     const double normal_z = sample.edge_u[0] * sample.edge_v[1];
     EXPECT_NEAR(std::atan2(normal_y, normal_z) * 180.0 / std::numbers::pi, 60.0, 1e-9);
-    EXPECT_NEAR(std::atan2(lamp.center[1], lamp.center[2]) * 180.0 / std::numbers::pi, 120.0, 1e-9);
+    EXPECT_NEAR(std::atan2(lamp.centre[1], lamp.centre[2]) * 180.0 / std::numbers::pi, 120.0, 1e-9);
     // The lamp looks back at the sample: cross(u, v) is opposite to its place.
     const double facing_y = -lamp.edge_u[0] * lamp.edge_v[2];
     const double facing_z = lamp.edge_u[0] * lamp.edge_v[1];
-    EXPECT_LT(facing_y * lamp.center[1] + facing_z * lamp.center[2], 0.0);
-    EXPECT_NEAR(facing_y * lamp.center[2] - facing_z * lamp.center[1], 0.0, 1e-9);
+    EXPECT_LT(facing_y * lamp.centre[1] + facing_z * lamp.centre[2], 0.0);
+    EXPECT_NEAR(facing_y * lamp.centre[2] - facing_z * lamp.centre[1], 0.0, 1e-9);
 }
 
 TEST_F(Sweeps, IlluminantByNameKeepsTheLuminanceAndBySpectrumIsTakenAsItIs) {

@@ -1,6 +1,6 @@
 #include "tests/tables/built_kernels.h"
 
-#include "host/error.h"
+#include "reradiant/error.h"
 #include "tests/render/kernel_sizes.h"
 
 #include <fmt/format.h>

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "host/render/renderer.h"
+#include "reradiant/render.h"
 
 #include <cstddef>
 
 namespace reradiant {
 
-/// What the kernels of a scene are, and what they took to build from nothing.
+/// The size of the kernels of a scene, and the seconds that it took to build them from nothing.
 struct BuiltKernels {
     double seconds = 0.0;
     std::size_t source_bytes = 0, instructions = 0, device_bytes = 0;

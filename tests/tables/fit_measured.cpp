@@ -3,10 +3,10 @@
 //
 //     table_fit_measured [FOLDER]
 
-#include "host/atomic_file.h"
-#include "host/error.h"
-#include "host/fit/fit.h"
+#include "host/base/atomic_file.h"
 #include "host/report/svg.h"
+#include "reradiant/error.h"
+#include "reradiant/fit.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // Prints how well `fit` recovers known matrices from synthetic data, as a Markdown table: one line
 // a case (grid, stack, number of fluorophores, noise), the mean of several data sets, since the
 // entries of one are wrong together: its bands may hold 75 or 100 % where 95 % is right on average.
-#include "host/error.h"
-#include "host/fit/fit.h"
+#include "reradiant/error.h"
+#include "reradiant/fit.h"
 #include "tests/tables/recovery_cases.h"
 
 #include <CLI/CLI.hpp>
@@ -53,7 +53,7 @@ void recover(const SynthRecipe& recipe, const TableOptions& options, unsigned se
         settings.rank = line.what.fluorophores;
     if (!recipe.stack.layers.empty())
         settings.stack = recipe.stack;
-    const std::clock_t start = std::clock(); // of all threads, whatever else the machine does
+    const std::clock_t start = std::clock(); // counts all threads and no other process
     const FitResult fit = fit_reradiation(data.data, settings);
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     const RecoveryError error =

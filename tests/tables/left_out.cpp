@@ -1,17 +1,18 @@
-// What specialising the kernels to a scene saves, as a Markdown table: every example scene as it
-// is, with all features, and with every wavelength sampled. Kernels are built anew in an empty
-// cache; seconds are ratios to the scene as it is, medians of alternating turns. Arguments: scene
-// files; none: those of tools/examples. Exits with 3 when two images of a scene differ by more than
-// three standard errors of their tile means (Sidak). A second table has the price of every feature
-// alone: the reference study, which needs few, with one more at a time.
-#include "host/device/device.h"
-#include "host/render/render_features.h"
-#include "host/render/renderer.h"
-#include "host/scene/scene.h"
-#include "tests/layers/walk_statistics.h"
+// Prints what specialising the kernels to a scene saves, as a Markdown table: every example scene
+// as it is, with all features, and with every wavelength sampled. Kernels are built anew in an
+// empty cache; seconds are ratios to the scene as it is, medians of alternating turns. Arguments:
+// scene files; none: those of tools/examples. Exits with 3 when two images of a scene differ by
+// more than three standard errors of their tile means (Sidak). A second table has the price of
+// every feature alone: the reference study, which needs few, with one more at a time.
+#include "host/render/plan/render_features.h"
+#include "reradiant/device.h"
+#include "reradiant/render.h"
+#include "reradiant/scene.h"
+#include "reradiant/scene_file.h"
+#include "tests/support/statistics.h"
 #include "tests/tables/built_kernels.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +51,7 @@ Scene small_scene(const fs::path& file) {
     return scene;
 }
 
-/// What a scene does not need and is rendered with all the same.
+/// The things that a scene does not need and that it is rendered with all the same.
 enum class Extra { Nothing, Features, Wavelengths };
 
 RenderOptions with_extra(Extra extra) {
@@ -157,8 +158,8 @@ bool print_scene(const BuiltScene& built, const Device& device) {
     const RenderResult needed = render(scene, device, some), kept = render(scene, device, keeping);
     const TileDistance features = tile_distance(needed.image, render(scene, device, all).image);
     const TileDistance wavelengths = tile_distance(needed.image, kept.image);
-    const bool same = features.largest < sidak_bound(features.tiles) &&
-                      wavelengths.largest < sidak_bound(wavelengths.tiles);
+    const bool same = features.largest < test::sidak_bound(features.tiles) &&
+                      wavelengths.largest < test::sidak_bound(wavelengths.tiles);
     fmt::print("| {} | {} | {:.0f} / {:.0f} | {:.1f} / {:.1f} | {:.1f} / {:.1f} | {:.1f} / {:.1f} "
                "| {:.2f} | {:.2f} | {} / {} | {:.2f} | {:.1f}, {:.1f}{} |\n",
                built.name, on_features(needed), kibibytes(built.some.source_bytes),

@@ -1,11 +1,12 @@
 // Every preset by the three models, as Markdown tables: how far weidlich-wilkie and adding are from
 // the random walk in albedo and in the BRRDF, and how much energy each sends back. Arguments: names
 // of presets; none: all of them.
-#include "host/measure/measure.h"
-#include "host/paths.h"
-#include "tests/layers/walk_statistics.h"
+#include "reradiant/measure.h"
+#include "reradiant/paths.h"
+#include "reradiant/scene_file.h"
+#include "tests/support/statistics.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -21,7 +22,7 @@ const WavelengthGrid bands{400, 40, 10};
 const std::vector<double> albedo_angles{0, 20, 40, 60, 75, 85, 89};
 constexpr long hemispherical_paths = 1L << 13U, directional_paths = 1L << 14U;
 /// Paths at ten bands and seven angles: what is a standard error for all of them.
-const double bound = sidak_bound(70 * 30);
+const double bound = test::sidak_bound(70 * 30);
 
 /// Light that leaves per light of one excitation band, at all wavelengths, by geometry.
 struct Sum {
@@ -52,14 +53,13 @@ MeasureRequest request_for(Model model, bool hemispherical) {
     return request;
 }
 
-/// Nothing where the model refuses the material.
+/// Measures a material by a model; returns nothing where the model refuses the material.
 std::optional<Sums> measured(const Material& material, Model model, bool hemispherical) {
     try {
         return sums_of(measure_material(material, request_for(model, hemispherical)));
     } catch (const Error& error) {
-        if (error.kind() != Error::Kind::Input) {
+        if (error.kind() != Error::Kind::Input)
             throw;
-        }
         return std::nullopt;
     }
 }
@@ -88,9 +88,8 @@ double worst_error(const Sums& model, const Sums& walk) {
         mean[1] += sum.value;
     }
     double worst = 0.0;
-    for (const auto& [geometry, mean] : means) {
+    for (const auto& [geometry, mean] : means)
         worst = mean[1] > 0.0 ? std::max(worst, std::fabs(mean[0] / mean[1] - 1.0)) : worst;
-    }
     return worst;
 }
 
@@ -104,9 +103,8 @@ double walk_uncertainty(const Sums& walk) {
         mean[1] += sum.value;
     }
     double worst = 0.0;
-    for (const auto& [geometry, mean] : means) {
+    for (const auto& [geometry, mean] : means)
         worst = mean[1] > 0.0 ? std::max(worst, mean[0] / mean[1]) : worst;
-    }
     return worst;
 }
 
@@ -147,9 +145,8 @@ int print_preset(const std::string& name) {
 
 int main(int argc, char** argv) {
     std::vector<std::string> names(argv + 1, argv + argc);
-    if (names.empty()) {
+    if (names.empty())
         names = preset_names();
-    }
     fmt::print("Albedo: light of all wavelengths per light of one, mean over {} bands. \"All\" is "
                "the worst angle of the albedo up to 89 degrees, \"BRRDF\" the worst of 27 pairs of "
                "directions without mirror deltas.\n\n"
@@ -159,9 +156,8 @@ int main(int argc, char** argv) {
                "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
                bands.count);
     int creating = 0;
-    for (const std::string& name : names) {
+    for (const std::string& name : names)
         creating += print_preset(name);
-    }
     fmt::print("\n{} models of presets create energy\n", creating);
     return creating > 0 ? 3 : 0;
 }

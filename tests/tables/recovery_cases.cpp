@@ -1,6 +1,6 @@
 #include "tests/tables/recovery_cases.h"
 
-#include "host/fit/synth_band.h"
+#include "host/fit/synth/synth_band.h"
 
 #include <array>
 #include <cmath>
@@ -32,7 +32,7 @@ std::array<Dye, 4> dyes() {
              0.6}};
 }
 
-/// What the dyes leave of the light, times the substrate's own reflectance.
+/// Returns the share of light that the dyes leave, times the substrate's own reflectance.
 Spectrum remaining(const std::vector<Fluorophore>& fluorophores) {
     std::vector<double> nm, value;
     for (double l = 290.0; l <= 790.0; l += 1.0) {
@@ -54,7 +54,7 @@ Layer layer_of(RecoveryStack stack) {
     return layer;
 }
 
-/// Photons emitted over photons absorbed.
+/// Returns the photons emitted over the photons absorbed.
 double overall_quantum_yield(const ReradiationMatrix& matrix) {
     const Eigen::MatrixXd fluorescence = matrix.fluorescent_part();
     const double steps = matrix.emission.step_nm / matrix.excitation.step_nm;

@@ -1,10 +1,11 @@
 #pragma once
 
-#include "host/fit/synth.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/synth.h"
 
 namespace reradiant {
 
-/// What lies on the sample of a recovery case.
+/// The layers on the sample of a recovery case; Bare has none.
 enum class RecoveryStack { Bare, Smooth, Rough, Absorbing };
 inline constexpr RecoveryStack recovery_stacks[] = {RecoveryStack::Bare, RecoveryStack::Smooth,
                                                     RecoveryStack::Rough, RecoveryStack::Absorbing};
@@ -21,7 +22,7 @@ struct RecoveryCase {
 /// measured in two geometries.
 SynthRecipe recovery_recipe(const RecoveryCase& wanted);
 
-/// How far a matrix is from the truth, over the entries with emission > excitation.
+/// The distance of a fitted matrix from the truth, over the entries with emission > excitation.
 struct RecoveryError {
     /// Root mean square error, in units of the truth's peak; `guessed`: of excitation bands under a
     /// stack whose reflectance no emission band measures, which their interreflections need. What

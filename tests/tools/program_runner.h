@@ -8,7 +8,7 @@
 
 namespace reradiant {
 
-/// What one run of the program left behind.
+/// The exit code and the texts that one run of the program left behind.
 struct ProgramResult {
     int exit_code = -1; ///< -1 when a signal ended it
     std::string output, errors;

@@ -10,8 +10,8 @@ using Json = nlohmann::json;
 
 class Classify : public ProgramTest {
 protected:
-    /// What the answers lead to; "R", "B", "S", "O" for the questions in the tree's order,
-    /// lower case for no.
+    /// Runs `classify` with these answers and returns its JSON. "R", "B", "S", "O" stand for the
+    /// questions in the tree's order, lower case for no.
     Json classified(const std::string& answers) const {
         std::string arguments = "classify --quiet --json result.json";
         for (const char answer : answers) {
@@ -85,7 +85,7 @@ TEST_F(Classify, BadMissingAndContradictoryAnswersAreRefused) {
     expect_failure(2, "classify --reflects-environment no </dev/null",
                    "--highlight-small is not answered");
     expect_failure(2, "classify --reflects-environment perhaps", "answer yes or no");
-    // Wherever it stands: here the tree would not ask for it.
+    // A wrong answer is refused wherever it stands: here the tree would not ask for it.
     expect_failure(2, "classify --reflects-environment no --highlight-small yes --one-highlight 2",
                    "--one-highlight is \"2\"");
     expect_failure(2,

@@ -1,6 +1,6 @@
 #include "tests/tools/program_runner.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -34,7 +34,8 @@ std::string measured_csv() {
     return text;
 }
 
-/// The same with light at twice the excitation, as bright as the fluorescence.
+/// Returns a measured matrix of one fluorophore on 40 emission and 10 excitation bands, with light
+/// at twice the excitation that is as bright as the fluorescence.
 std::string csv_with_scatter() {
     std::string text = "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
                        "# kind: measured\nnm";

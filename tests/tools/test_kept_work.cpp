@@ -79,7 +79,8 @@ TEST_F(KeptWork, CellOfAStudyGoesOnFromItsOwnRender) {
     ASSERT_EQ(run_until("results/cells/0000/image.exr.checkpoint", work), 130);
     ASSERT_TRUE(std::filesystem::exists(folder / "results/cells/0000/image.exr.checkpoint"));
     const std::string kept = file_bytes(folder / "results/cells/0000/image.exr.checkpoint");
-    // Of another scene: refused where it must fit, begun anew where it need not.
+    // A checkpoint of another scene is refused where it must fit, and work is begun anew where it
+    // need not.
     put("scene.toml", replaced(small_scene(), "radius = 1\n", "radius = 0.9\n"));
     expect_failure(2, work + " --resume", "the scene is");
     put("scene.toml", small_scene());

@@ -18,7 +18,7 @@ protected:
             GTEST_SKIP() << "NOT TESTED: this build has no MPI";
         if (std::system("command -v mpirun >/dev/null") != 0)
             GTEST_SKIP() << "NOT TESTED: there is no mpirun";
-        // As in a container without /sys, where it finds no cores.
+        // In a container without /sys, for one, mpirun finds no cores.
         if (const ProgramResult idle = launch(1, "true"); idle.exit_code != 0)
             GTEST_SKIP() << "NOT TESTED: mpirun cannot start `true` here: "
                          << idle.errors.substr(0, idle.errors.find('\n'));
@@ -50,8 +50,8 @@ protected:
         ASSERT_EQ(a.sample_count, b.sample_count);
         for (std::size_t i = 0; i < a.values.size(); ++i)
             ASSERT_NEAR(a.values[i], b.values[i], 1e-6f * std::abs(b.values[i])) << i;
-        // of float sums of squares, scaled by halves whose sums are floats; where all samples are
-        // the same the variance is a rounding
+        // The roundings are those of float sums of squares, scaled by halves whose sums are floats;
+        // where all samples are the same the variance is a rounding.
         const float rounding = 1e-6f * *std::ranges::max_element(b.variance_y);
         for (std::size_t i = 0; i < a.variance_y.size(); ++i)
             ASSERT_NEAR(a.variance_y[i], b.variance_y[i],
@@ -95,7 +95,7 @@ TEST_F(Mpi, RulesThatStopARenderStopAllRanks) {
     const double seconds = json("b.json").at("passes").back().at("seconds").get<double>();
     EXPECT_GE(seconds, 1.0);
     EXPECT_LT(seconds, 5.0);
-    // What was rendered is known exactly, so that one process can render it again.
+    // The samples that were rendered are known exactly, so that one process can render them again.
     const auto samples = json("b.json").at("spp").get<int>();
     ASSERT_EQ(run("render scene.toml -o c.exr --spp " + std::to_string(samples)).exit_code, 0);
     expect_equal("b.exr", "c.exr");
@@ -143,7 +143,8 @@ TEST_F(Mpi, JobThatDiesGoesOnFromItsCheckpointWithAnyNumberOfRanks) {
 }
 
 TEST_F(Mpi, RankThatIsAskedToEndEndsAllWithACheckpoint) {
-    // As a batch system does to one machine. mpirun's own SIGTERM leaves ranks a second.
+    // One rank is asked to end, as a batch system does to one machine; mpirun's own SIGTERM leaves
+    // ranks a second.
     const ProgramResult result =
         shell("mpirun --allow-run-as-root --oversubscribe --bind-to none -n 2 '" RERADIANT_PROGRAM
               "' render scene.toml -o out.exr --spp 100000000 --checkpoint 0.2 & job=$!; tries=0; "

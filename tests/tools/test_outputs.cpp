@@ -14,8 +14,8 @@ const std::string shipped = std::string(RERADIANT_SOURCE_DIR) + "/spectra/reradi
 const std::string orange = shipped + "synthetic-orange.csv";
 const std::string examples = std::string(RERADIANT_SOURCE_DIR) + "/tools/examples/";
 
-/// What a command line names to be written, wrong in one way or another: found out before anything
-/// is read that takes time, with nothing written.
+/// These tests name outputs on the command line that are wrong in one way or another: that is found
+/// out before anything is read that takes time, with nothing written.
 class Outputs : public ProgramTest {
 protected:
     void SetUp() override {
@@ -141,7 +141,7 @@ TEST_F(Outputs, TheOptionThatWasMeantIsNamed) {
     };
     for (const auto& [command, message] : meant)
         expect_failure(2, with_name(command, ""), message);
-    // What is behind the last dot need not be a format.
+    // The letters behind the last dot need not be a format.
     EXPECT_EQ(run("measure material.toml -o part.001").exit_code, 0);
     fs::create_directory(folder / "old.png");
     EXPECT_EQ(run("study study.toml -o old.png --quiet").exit_code, 0) << "it is a folder";

@@ -14,7 +14,8 @@ constexpr const char* watch = "<script>window.faults = [];"
                               "addEventListener('error', (e) => faults.push(String(e.message)));"
                               "</script>";
 
-/// What every page must say of itself: faults, resources from elsewhere, pictures that are broken.
+/// This script adds to `outcome` what every page must say of itself: faults, resources from
+/// elsewhere, pictures that are broken.
 constexpr const char* report = R"js(
   outcome.faults = faults;
   outcome.fetched = performance.getEntriesByType('resource').map((e) => e.name)

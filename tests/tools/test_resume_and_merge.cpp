@@ -57,7 +57,7 @@ TEST_F(ResumeAndMerge, Case57ResumedRenderEqualsTheUninterruptedOne) {
     ASSERT_EQ(WEXITSTATUS(status), 130) << file_bytes(folder / "errors.txt");
     EXPECT_FALSE(std::filesystem::exists(folder / "out.exr")) << "a part is no result";
     ASSERT_TRUE(std::filesystem::exists(folder / "out.exr.checkpoint"));
-    // Where the interruption fell decides how far there is to go.
+    // The moment of the interruption decides how far there is to go.
     ASSERT_EQ(run("render scene.toml -o out.exr --resume --time 0.001 --json state.json").exit_code,
               0);
     const auto done = static_cast<int>(spp_of("state.json", "resumed_spp"));

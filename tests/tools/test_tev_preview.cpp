@@ -18,7 +18,7 @@ constexpr const char* scene = "[film]\nwidth = 140\nheight = 8\n"
                               "[camera]\norigin = [0, 0, 3]\ntarget = [0, 0, 0]\n"
                               "[[light]]\ntype = \"environment\"\nradiance = 1.0\n";
 
-/// What the viewer would be: takes one connection and keeps all that it is sent.
+/// A `Listener` stands in for the viewer: it takes one connection and keeps all that it is sent.
 class Listener {
 public:
     Listener() : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {

@@ -1,9 +1,9 @@
 // Google Benchmark: how a render's time grows with bands, rank of re-radiation, layers, depth,
 // pixels, lights and triangles. Each is a small render of one study with one number changed; the
 // counters are what was done in a second of the render proper, and what was needed before it.
-#include "host/device/device.h"
-#include "host/render/renderer.h"
-#include "host/scene/scene.h"
+#include "reradiant/device.h"
+#include "reradiant/render.h"
+#include "reradiant/scene.h"
 
 #include <benchmark/benchmark.h>
 
@@ -120,7 +120,7 @@ void run(benchmark::State& state, const Study& study) {
     state.counters["rays/path"] =
         static_cast<double>(result.rays) / static_cast<double>(result.paths);
     state.counters["device_MB"] = 1e-6 * static_cast<double>(result.device_bytes);
-    state.counters["peak_MB"] = 1e-3 * peak_kilobytes(); // of the process so far
+    state.counters["peak_MB"] = 1e-3 * peak_kilobytes(); // the peak of the process so far
 }
 
 int argument(const benchmark::State& state) {

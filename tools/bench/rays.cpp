@@ -1,11 +1,13 @@
-// How much more a render costs than its rays: renders a scene, records every ray, and lets Embree
-// trace them alone. One line a number of bands, medians over repetitions that take turns, so that
-// ratios hold on a machine that others use too.
-#include "host/device/device.h"
-#include "host/error.h"
+// Measures how much more a render costs than its rays: renders a scene, records every ray, and lets
+// Embree trace them alone. Prints one line for each number of bands: medians over repetitions that
+// take turns, so that ratios hold on a machine that others use too.
 #include "host/geometry/geometry.h"
-#include "host/render/renderer.h"
-#include "host/scene/scene.h"
+#include "host/render/wavefront/render_hooks.h"
+#include "reradiant/device.h"
+#include "reradiant/error.h"
+#include "reradiant/render.h"
+#include "reradiant/scene.h"
+#include "reradiant/scene_file.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -51,9 +53,11 @@ RenderOptions options_of(const Arguments& arguments, int bands) {
 std::vector<RecordedRays> record_rays(const Scene& scene, const Device& device,
                                       RenderOptions options) {
     std::vector<RecordedRays> recorded;
-    options.on_rays = [&](std::span<const RayRecord> rays, bool shadow, bool coherent) {
+    RenderHooks hooks;
+    hooks.on_rays = [&](std::span<const RayRecord> rays, bool shadow, bool coherent) {
         recorded.push_back({{rays.begin(), rays.end()}, shadow, coherent});
     };
+    options.hooks = &hooks;
     render(scene, device, options);
     return recorded;
 }

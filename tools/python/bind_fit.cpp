@@ -1,18 +1,19 @@
-#include "host/error.h"
-#include "host/fit/fit.h"
-#include "host/fit/fit_report.h"
-#include "host/fit/fit_summary.h"
-#include "host/fit/synth.h"
-#include "host/fit/synth_recipe.h"
-#include "host/output_ending.h"
-#include "host/output_file.h"
+#include "host/base/logging.h"
+#include "host/base/output_ending.h"
+#include "host/base/output_file.h"
+#include "host/fit/result/fit_report.h"
+#include "host/fit/result/fit_summary.h"
+#include "host/fit/synth/synth_recipe.h"
+#include "reradiant/error.h"
+#include "reradiant/fit.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/synth.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
 #include "tools/python/values.h"
 
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <limits>
@@ -26,7 +27,7 @@ namespace {
 
 using DataPointer = std::shared_ptr<BispectralData>;
 
-/// What a fit needs for its report, too.
+/// A fit and the data that it was made of, which its report shows too.
 struct Fit {
     BispectralData data;
     FitResult result;
@@ -72,7 +73,7 @@ std::shared_ptr<Fit> fit_data(const BispectralData& data, const py::dict& given)
         settings.solver.stop = stop;
         Fit fit{data, fit_reradiation(data, settings)};
         if (!fit.result.shortfall.empty())
-            spdlog::warn("{}", fit.result.shortfall);
+            logging::warn("{}", fit.result.shortfall);
         return fit;
     }));
 }

@@ -1,8 +1,9 @@
 #include "host/report/svg.h"
-#include "host/spectral/colour.h"
-#include "host/spectral/matrix_io.h"
-#include "host/spectral/spectrum.h"
-#include "host/spectral/wavelength_unit.h"
+#include "host/spectral/text/wavelength_unit.h"
+#include "reradiant/colour.h"
+#include "reradiant/reradiation_file.h"
+#include "reradiant/spectrum.h"
+#include "reradiant/spectrum_file.h"
 #include "tools/python/bindings.h"
 #include "tools/python/values.h"
 
@@ -16,11 +17,12 @@ namespace reradiant::python {
 
 namespace {
 
-/// What a scene file takes wavelengths from (CHECKED_FROM_NM of host/scene/spectrum_reader.cpp).
+/// The range in nm that a scene file takes wavelengths from (CHECKED_FROM_NM and CHECKED_TO_NM of
+/// host/scene/toml/spectrum_reader.cpp).
 constexpr int sampled_from_nm = 200, sampled_to_nm = 1000;
 
-/// A spectrum as a SPECTRUM of a scene file: its boxes as lines, the rest as a table with every
-/// node of the spectrum's own tables and, for what curves, a node each nm.
+/// Returns a spectrum as a SPECTRUM of a scene file: its boxes as lines, the rest as a table with
+/// every node of the spectrum's own tables and, for parts that curve, a node each nm.
 py::object scene_form(const Spectrum& spectrum) {
     py::list terms;
     const Spectrum smooth = spectrum.without_lines();

@@ -2,8 +2,9 @@
 
 #include <pybind11/pybind11.h>
 
-/// What each part of the library adds to the module `reradiant._library`. These functions trust
-/// their arguments; the Python files beside them check what users give.
+/// Each bind_ function adds one part of the library to the module `reradiant._library`. The
+/// functions of that module trust their arguments; the Python files beside them check what users
+/// give.
 namespace reradiant::python {
 
 void bind_spectra(pybind11::module_& module);

@@ -18,7 +18,7 @@ namespace reradiant::python {
 
 namespace {
 
-/// How late Ctrl-C may be noticed; a wake-up costs microseconds.
+/// Ctrl-C is noticed at most this much later; a wake-up costs microseconds.
 constexpr auto signal_period = std::chrono::milliseconds(50);
 
 struct LogMessage {
@@ -51,7 +51,7 @@ std::shared_ptr<MessageStore>& message_store() {
     return store;
 }
 
-/// Work on its thread, and how to wait for its end.
+/// A `Worker` runs work on a thread of its own and can wait for its end.
 class Worker {
 public:
     explicit Worker(const std::function<void(StopFlag)>& work)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/interruption.h"
+#include "reradiant/interruption.h"
 
 #include <pybind11/pybind11.h>
 
@@ -22,7 +22,7 @@ void pass_messages_on();
 /// `work` throws is thrown here. Called and left with the GIL.
 void run_interruptible(const std::function<void(StopFlag)>& work);
 
-/// The same for work with a result.
+/// Runs `work` as run_interruptible does, and returns its result.
 template <typename Work>
 auto interruptible(Work&& work) {
     std::optional<decltype(work(StopFlag{}))> result;

@@ -1,5 +1,5 @@
-#include "host/error.h"
-#include "host/scene/scene.h"
+#include "reradiant/error.h"
+#include "reradiant/scene_file.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
 

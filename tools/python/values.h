@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/spectral/grid.h"
+#include "reradiant/wavelength_grid.h"
 
 #include <nlohmann/json.hpp>
 #include <pybind11/numpy.h>
@@ -15,14 +15,15 @@ namespace reradiant::python {
 
 using Doubles = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
-/// What a call works on: a file, or a table that stands for one. Paths in the table start at the
-/// folder of `file`, which then is only a name.
+/// A `Source` is the input of a call: a file, or a table that stands for one. Paths in the table
+/// start at the folder of `file`, which then is only a name.
 struct Source {
     std::optional<toml::table> table;
     std::filesystem::path file;
 };
 
-/// A file name (str) or (dict of plain Python values, name); reradiant/_plain.py makes them.
+/// Reads a Source from a file name (str) or from (dict of plain Python values, name), as
+/// reradiant/_plain.py makes them.
 Source source_from(const pybind11::object& argument);
 pybind11::object python_value(const nlohmann::ordered_json& value);
 

@@ -8,10 +8,10 @@
 #include <thread>
 #include <vector>
 
-// What this project uses of oneTBB, with the standard library's threads: builds for the thread
-// sanitizer include this in its place. They cannot see how the library, which is not built with
-// them, hands tasks from thread to thread, and would call every result a race. Here tasks of one
-// loop are ordered by nothing but what their bodies do.
+// This header holds the part of oneTBB that this project uses, written with the threads of the
+// standard library. Builds for the thread sanitizer include it in place of oneTBB: they cannot see
+// how the library, which is not built with them, hands tasks from thread to thread, and would call
+// every result a race. Here the tasks of one loop are ordered by nothing but what their bodies do.
 
 namespace tbb {
 
@@ -36,10 +36,11 @@ struct simple_partitioner {};
 
 namespace thread_sanitizer {
 
-/// global_control's; at least two threads, or there were nothing to see.
+/// The most threads that global_control allows; at least two, or there were nothing to see.
 inline std::atomic<int> most_threads =
     std::max(2, static_cast<int>(std::thread::hardware_concurrency()));
-/// The arena's that this thread is in; 0: most_threads. Loops inside loops are serial.
+/// The number of threads of the arena that this thread is in; 0: most_threads. Loops inside loops
+/// are serial.
 inline thread_local int arena_threads = 0;
 
 inline int concurrency() {

@@ -1,10 +1,10 @@
 // Links the library: what a varnish lets in and keeps back, and the colour of a fluorescent orange.
 // Prints transmission, internal reflectance and XYZ under D65.
-#include "host/error.h"
-#include "host/layers/adding.h"
-#include "host/paths.h"
-#include "host/spectral/colour_of_matrix.h"
-#include "host/spectral/matrix_io.h"
+#include "reradiant/adding.h"
+#include "reradiant/colour_of_matrix.h"
+#include "reradiant/error.h"
+#include "reradiant/paths.h"
+#include "reradiant/reradiation_file.h"
 
 #include <cstdio>
 

@@ -72,8 +72,8 @@ class _Plain:
 
 @contextlib.contextmanager
 def source(name: str, value: Any, folder: Optional[Any], root: Optional[str] = None) -> Iterator[Any]:
-    """What the library takes for a file name or a dict, for as long as the context lasts. Relative
-    paths in a dict start at `folder`, the working folder by default."""
+    """Yields the form in which the library takes a file name or a dict; it holds for as long as the
+    context lasts. Relative paths in a dict start at `folder`, the working folder by default."""
     if isinstance(value, (str, os.PathLike)):
         yield _checks.path(name, value)
         return

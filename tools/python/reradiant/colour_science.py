@@ -37,8 +37,8 @@ def _raise_channel_limit() -> None:
 
 
 def read_spectral_image(file: Any, **options: Any) -> Any:
-    """What colour.read_spectral_image_Fichet2021 reads of a spectral or bispectral EXR, of as many
-    channels as it has; `options` are those of that function. A bispectral image is {excitation in
+    """Reads a spectral or bispectral EXR by colour.read_spectral_image_Fichet2021, whatever the
+    number of its channels; `options` are those of that function. A bispectral image is {excitation in
     nm: (emissions in nm, values), "T": (wavelengths, the diagonal)}."""
     colour = _colour()
     _raise_channel_limit()
@@ -46,7 +46,7 @@ def read_spectral_image(file: Any, **options: Any) -> Any:
 
 
 def write_spectral_image(components: Any, file: Any, **options: Any) -> Any:
-    """The other way round, by colour.write_spectral_image_Fichet2021."""
+    """Writes a spectral or bispectral EXR by colour.write_spectral_image_Fichet2021."""
     colour = _colour()
     _raise_channel_limit()
     return colour.write_spectral_image_Fichet2021(components, str(file), **options)
@@ -79,7 +79,8 @@ def to_distributions(matrix: Reradiation) -> Any:
 
 
 def from_distributions(distributions: Any, **options: Any) -> Reradiation:
-    """The other way round; `options` are those of Reradiation."""
+    """Returns the Reradiation of distributions such as `to_distributions` makes; `options` are those of
+    Reradiation."""
     if not isinstance(distributions, _colour().MultiSpectralDistributions):
         raise _checks.refuse("distributions", f"is a {type(distributions).__name__}",
                              "give a colour.MultiSpectralDistributions")

@@ -6,7 +6,7 @@ from typing import Optional
 
 
 class Error(Exception):
-    """What is wrong, where, and what would be right.
+    """An error; its message says what is wrong, where, and what would be right.
 
     Attributes
     ----------

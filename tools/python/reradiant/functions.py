@@ -1,4 +1,4 @@
-"""What the program's commands do, as functions. Ctrl-C ends each of them with KeyboardInterrupt;
+"""The commands of the program as functions. Ctrl-C ends each of them with KeyboardInterrupt;
 the interpreter's lock is released while they work; warnings go to the logger "reradiant"."""
 
 from __future__ import annotations

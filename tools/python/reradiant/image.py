@@ -98,7 +98,7 @@ class Image:
 
     @property
     def attributes(self) -> Dict[str, str]:
-        """What made the image, as its file says."""
+        """Attributes by name that say what made the image, as its file has them."""
         return self._image.attributes
 
     def srgb(self) -> np.ndarray:

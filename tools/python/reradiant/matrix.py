@@ -12,7 +12,7 @@ from .spectrum import Spectrum
 
 def table_form(rows: Optional[str], quantity: Optional[str], scale: Any, decimal: Optional[str],
                kind: Optional[str], anti_stokes: bool) -> "_library.TableForm":
-    """What a plain table does not say of itself, checked."""
+    """Checks the properties that a plain table does not say of itself, for the library."""
     def word(name: str, value: Optional[str], names: Sequence[str]) -> str:
         return "" if value is None else _checks.choice(name, value, names)
 

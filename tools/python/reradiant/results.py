@@ -1,4 +1,4 @@
-"""What `measure`, `synth` and `fit` give back."""
+"""The results of `measure`, `synth` and `fit`."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Measurement:
 
     @property
     def notes(self) -> List[str]:
-        """What a reader of the values must know."""
+        """Remarks that a reader of the values must know."""
         return self._measurement.notes
 
     def matrix(self, theta_i: float = 0.0, theta_o: float = 0.0, phi: float = 0.0,
@@ -189,7 +189,7 @@ class Fit:
 
     @property
     def summary(self) -> Dict[str, Any]:
-        """What `reradiant fit --json` says: rank, relative_rmse, quantum_yield, converged, ...
+        """The summary that `reradiant fit --json` writes: rank, relative_rmse, quantum_yield, ...
 
         quantum_yield is a list of {value, low, high}, one a term: photons emitted over photons that
         the sample absorbs, by its dye or by anything else. A dye's own yield, over the photons that

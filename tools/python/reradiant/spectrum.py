@@ -54,7 +54,7 @@ class Spectrum:
 
     @classmethod
     def constant(cls, value: float) -> "Spectrum":
-        """The same value at every wavelength."""
+        """A spectrum with the same value at every wavelength."""
         return cls._of(_library.Spectrum.constant(_checks.number("value", value)))
 
     @classmethod

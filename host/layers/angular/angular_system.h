@@ -1,0 +1,79 @@
+#pragma once
+
+#include "host/layers/angular/angular_piles.h"
+#include "reradiant/layer_stack.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace reradiant {
+
+/// True when an interface is treated as rough: it has a width, and the media differ by more than
+/// the operators resolve (5e-5 of IOR; below that it neither reflects nor deflects visibly).
+bool is_rough_interface(const StackValues& stack, std::size_t index);
+
+/// `AngularShares` says where light ends up, by the cell of direction that it comes through. The
+/// substrate is black.
+struct AngularShares {
+    Eigen::VectorXd to_substrate; ///< share that reaches the substrate
+    Eigen::VectorXd to_air;       ///< share that leaves again into the air
+    Eigen::VectorXd lost;         ///< share lost to single scattering
+};
+
+/// An `AngularResponse` says where light ends up that comes down to the first scatterer, by cell of
+/// its upper side, and where light ends up that the substrate emits.
+struct AngularResponse {
+    AngularShares incoming;
+    /// If the first scatterer is a slab, the shares of the light that leaves it downwards, by the
+    /// same cells; empty for a rough interface.
+    AngularShares passed;
+    double internal_reflectance = 0.0;
+    double escape = 0.0; ///< share of the substrate's flux that leaves into the air
+};
+
+/// Adding on azimuthally averaged flux (Fourier order 0): the operators of what scatters, rough
+/// interfaces and slabs, with smooth piles of media between them, solved for all interreflections
+/// at once by one LU of the value function (the adjoint), on the cells of both sides of them all.
+class AngularSystem {
+public:
+    /// Sets up the first `count` layers of the stack, of which something must scatter.
+    AngularSystem(const StackValues& stack, std::size_t count);
+
+    /// Solves for all interreflections. `weight` is the factor with which the substrate weighs both
+    /// what it sends out and what it receives; with 1, light is emitted diffusely and all of it
+    /// counts.
+    AngularResponse solve(const SubstrateWeight& weight = [](double) { return 1.0; }) const;
+    /// Media and slabs from the air to the medium above the first scatterer.
+    const SmoothStack& top() const { return top_media_; }
+    const AngularGrid& top_grid() const { return scatterers_.front().upper; }
+    /// Optical depth, scattering included, of a slab that is the first scatterer; else 0.
+    double top_depth() const { return scatterers_.front().depth; }
+    /// Reflection lobe of a rough interface that is the first scatterer, mean over each cell of its
+    /// upper side. Only known for one towards a denser medium, else empty.
+    const Eigen::VectorXd& first_lobe() const { return first_lobe_; }
+
+private:
+    /// A rough interface or a slab between its neighbours; `response`(i, j): share of cell j's flux
+    /// that leaves through cell i; upper cells first, then lower ones.
+    struct Scatterer {
+        AngularGrid upper, lower;
+        Eigen::MatrixXd response;
+        bool loses = false; ///< flux that `response` lacks is lost, not absorbed
+        double depth = 0.0; ///< optical depth of a slab, scattering included
+    };
+
+    void add_interface(const StackValues& stack, std::size_t index);
+    void add_slab(const LayerValues& layer);
+    /// Values of outgoing flux as a linear function of the values of incoming flux.
+    Eigen::MatrixXd coupling(const SubstratePile& substrate) const;
+    Eigen::Index size() const;
+
+    std::vector<Scatterer> scatterers_;
+    std::vector<CellPile> between_;
+    SmoothStack top_media_, bottom_media_;
+    AirPile air_;
+    Eigen::VectorXd first_lobe_;
+};
+
+} // namespace reradiant

@@ -1,0 +1,228 @@
+#include "host/render/tables/environment_tables.h"
+#include "host/render/tables/scene_tables.h"
+#include "host/spectral/colour/rgb_basis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace reradiant {
+
+namespace {
+
+float narrow(double value) {
+    return static_cast<float>(value);
+}
+
+Vector3 cross(const Vector3& a, const Vector3& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double length(const Vector3& v) {
+    return std::hypot(v[0], v[1], v[2]);
+}
+
+void set_position(LightRecord& record, const Vector3& position) {
+    record.px = narrow(position[0]);
+    record.py = narrow(position[1]);
+    record.pz = narrow(position[2]);
+}
+
+void set_normal(LightRecord& record, const Vector3& direction) {
+    const double size = length(direction);
+    record.nx = narrow(direction[0] / size);
+    record.ny = narrow(direction[1] / size);
+    record.nz = narrow(direction[2] / size);
+}
+
+/// Geometry of a light; returns the factor from its mean spectral value to its power (relative,
+/// for the choice among lights only).
+struct DescribeLight {
+    LightRecord& record;
+
+    double operator()(const RectangleLight& light) const {
+        record.type = LIGHT_RECTANGLE;
+        set_position(record, light.centre);
+        record.ux = narrow(light.edge_u[0]);
+        record.uy = narrow(light.edge_u[1]);
+        record.uz = narrow(light.edge_u[2]);
+        record.vx = narrow(light.edge_v[0]);
+        record.vy = narrow(light.edge_v[1]);
+        record.vz = narrow(light.edge_v[2]);
+        const Vector3 normal = cross(light.edge_u, light.edge_v);
+        set_normal(record, normal);
+        record.radius_or_area = narrow(length(normal));
+        return std::numbers::pi * length(normal);
+    }
+    double operator()(const SphereLight& light) const {
+        record.type = LIGHT_SPHERE;
+        set_position(record, light.centre);
+        record.radius_or_area = narrow(light.radius);
+        return 4.0 * std::numbers::pi * std::numbers::pi * light.radius * light.radius;
+    }
+    double operator()(const PointLight& light) const {
+        record.type = LIGHT_POINT;
+        set_position(record, light.position);
+        return 4.0 * std::numbers::pi;
+    }
+    double operator()(const DirectionalLight& light) const {
+        record.type = LIGHT_DIRECTIONAL;
+        set_normal(record, light.direction);
+        return std::numbers::pi;
+    }
+    /// A constant environment is found by the paths' own directions, an image is sampled too.
+    double operator()(const EnvironmentLight& light) const {
+        record.type = LIGHT_ENVIRONMENT;
+        return light.image >= 0 ? 4.0 * std::numbers::pi * std::numbers::pi : 0.0;
+    }
+};
+
+/// Lanes of a light's spectrum: sub-cell means on the comb (so that no power is lost between
+/// phases), values at the centres with a single phase; a line's power on its own lanes.
+double lane_value(const Spectrum& spectrum, const Spectrum& on_comb, const WavelengthPlan& plan,
+                  int lane, int phase) {
+    const auto [from, to] = plan.interval_nm(lane, phase);
+    if (!plan.lanes[static_cast<std::size_t>(lane)].is_line)
+        return plan.phases == 1 ? on_comb(plan.wavelength_nm(lane, phase))
+                                : on_comb.average(from, to);
+    double power = 0.0;
+    for (const SpectralLine& line : spectrum.lines())
+        if (plan.stands_apart(line) &&
+            std::abs(0.5 * (from + to) - line.centre_nm) < 0.5 * line.width_nm)
+            power += line.integral * (to - from) / line.width_nm;
+    return power;
+}
+
+/// Appends [phase][lane] of a spectrum times a smooth factor; returns the mean value over lanes.
+double append_spectrum(const Spectrum& spectrum, const Spectrum& factor, const WavelengthPlan& plan,
+                       std::vector<float>& tables) {
+    Spectrum on_comb = spectrum.without_lines();
+    for (const SpectralLine& line : spectrum.lines())
+        if (!plan.stands_apart(line))
+            on_comb += Spectrum::line(line.centre_nm, line.width_nm, line.integral);
+    const int lanes = static_cast<int>(plan.lanes.size());
+    double sum = 0.0;
+    for (int phase = 0; phase < plan.phases; ++phase)
+        for (int lane = 0; lane < plan.padded_lanes(); ++lane) {
+            const double value = lane < lanes ? lane_value(spectrum, on_comb, plan, lane, phase) *
+                                                    factor(plan.wavelength_nm(lane, phase))
+                                              : 0.0;
+            tables.push_back(narrow(value));
+            const bool is_line = lane < lanes && plan.lanes[static_cast<std::size_t>(lane)].is_line;
+            sum += is_line ? value / plan.comb.step_nm : value;
+        }
+    return sum / (plan.phases * plan.comb.count);
+}
+
+/// Half by power, half evenly: a dim light close by must not be missed.
+void set_selection(std::vector<LightRecord>& lights, const std::vector<double>& powers) {
+    double total = 0.0;
+    int sampled = 0;
+    for (const double power : powers) {
+        total += power;
+        sampled += power > 0.0 ? 1 : 0;
+    }
+    double cumulative = 0.0;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const double selection = powers[i] > 0.0 ? 0.5 * powers[i] / total + 0.5 / sampled : 0.0;
+        cumulative += selection;
+        lights[i].selection = narrow(selection);
+        lights[i].cumulative = narrow(cumulative);
+    }
+}
+
+} // namespace
+
+namespace {
+
+/// The image's spectra: what its red, green and blue stand for, [3][phase][lane]; returns their
+/// mean over lanes and colours.
+double append_image_spectra(const EnvironmentLight& sky, const WavelengthPlan& plan,
+                            std::vector<float>& tables) {
+    double mean = 0.0;
+    for (const Spectrum& primary : rgb_basis())
+        mean += append_spectrum(sky.radiance, primary, plan, tables) / 3.0;
+    return mean;
+}
+
+/// Mean of each light's spectrum, its tables appended. Constant environments are one: the first
+/// holds their sum.
+double append_light_spectrum(const Scene& scene, const Light& light, const WavelengthPlan& plan,
+                             SceneTables& tables) {
+    const Spectrum one = Spectrum::constant(1.0);
+    const auto* sky = std::get_if<EnvironmentLight>(&light);
+    if (sky == nullptr)
+        return append_spectrum(light_spectrum(light), one, plan, tables.tables);
+    const auto index = static_cast<std::uint32_t>(tables.lights.size());
+    if (sky->image >= 0) {
+        const Image& image = scene.images[static_cast<std::size_t>(sky->image)];
+        if (!(mean_over_sphere(image) > 0.0))
+            return 0.0; // black: nothing to sample
+        const double mean = append_image_spectra(*sky, plan, tables.tables);
+        tables.image = append_environment_image(image, sky->rotation_deg, tables.tables);
+        tables.image.light = index;
+        tables.features.environment_image = true;
+        return mean * mean_over_sphere(image);
+    }
+    Spectrum sum;
+    for (const Light& other : scene.lights)
+        if (const auto* constant = std::get_if<EnvironmentLight>(&other);
+            constant && constant->image < 0)
+            sum += constant->radiance;
+    const double mean = append_spectrum(sum, one, plan, tables.tables);
+    if (tables.environment == NO_INDEX && mean > 0.0)
+        tables.environment = index;
+    return mean;
+}
+
+} // namespace
+
+void append_lights(const Scene& scene, const WavelengthPlan& plan, SceneTables& tables) {
+    std::vector<double> powers;
+    for (const Light& light : scene.lights) {
+        LightRecord record{};
+        const double factor = std::visit(DescribeLight{record}, light);
+        record.spectrum = static_cast<std::uint32_t>(tables.tables.size());
+        powers.push_back(factor * append_light_spectrum(scene, light, plan, tables));
+        tables.features.area_lights |=
+            record.type == LIGHT_RECTANGLE || record.type == LIGHT_SPHERE;
+        tables.features.delta_lights |=
+            record.type == LIGHT_POINT || record.type == LIGHT_DIRECTIONAL;
+        tables.lights.push_back(record);
+    }
+    set_selection(tables.lights, powers);
+    for (std::size_t i = 0; i < powers.size(); ++i)
+        if (powers[i] > 0.0)
+            tables.sampled_lights = static_cast<std::uint32_t>(i + 1);
+    tables.features.environment |= tables.environment != NO_INDEX;
+}
+
+CameraRecord camera_record(const Camera& camera, const FilmSettings& film) {
+    Vector3 forward{}, right{}, up{};
+    for (std::size_t i = 0; i < 3; ++i)
+        forward[i] = camera.target[i] - camera.origin[i];
+    right = cross(forward, camera.up);
+    up = cross(right, forward);
+    const double half_height = std::tan(0.5 * camera.fov_deg * std::numbers::pi / 180.0);
+    const double half_width = half_height * film.width / film.height;
+    CameraRecord record{};
+    const auto store = [](const Vector3& v, double size, float& x, float& y, float& z) {
+        const double scale = size / length(v);
+        x = narrow(v[0] * scale);
+        y = narrow(v[1] * scale);
+        z = narrow(v[2] * scale);
+    };
+    record.origin_x = narrow(camera.origin[0]);
+    record.origin_y = narrow(camera.origin[1]);
+    record.origin_z = narrow(camera.origin[2]);
+    store(forward, 1.0, record.forward_x, record.forward_y, record.forward_z);
+    store(right, half_width, record.right_x, record.right_y, record.right_z);
+    store(up, half_height, record.up_x, record.up_y, record.up_z);
+    record.lens_radius = narrow(camera.lens_radius);
+    record.focus_distance = narrow(camera.focus_distance);
+    record.width = static_cast<std::uint32_t>(film.width);
+    record.height = static_cast<std::uint32_t>(film.height);
+    return record;
+}
+
+} // namespace reradiant

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "kernels/core/shared.h"
+
+#include <functional>
+#include <span>
+
+namespace reradiant {
+
+/// Sees every batch of rays before it is traced: what the tracing alone costs can be measured.
+using RaySink = std::function<void(std::span<const RayRecord> rays, bool shadow, bool coherent)>;
+
+/// Functions that a render calls on its way.
+struct RenderHooks {
+    RaySink on_rays; ///< may be empty
+};
+
+} // namespace reradiant

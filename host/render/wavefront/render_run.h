@@ -1,0 +1,64 @@
+#pragma once
+
+#include "host/geometry/geometry.h"
+#include "host/render/checkpoint/checkpoint_file.h"
+#include "host/render/tables/scene_tables.h"
+#include "host/render/wavefront/wavefront.h"
+#include "reradiant/render.h"
+
+#include <chrono>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace reradiant {
+
+/// A render that was set up: what it has, and the steps that its passes are made of.
+class RenderRun {
+public:
+    /// Refuses what render() refuses.
+    RenderRun(const Scene& scene, const Device& device, const RenderOptions& options);
+
+    /// Goes on from the checkpoint where there is one and it is asked for. Time begins to count.
+    void resume();
+    const RenderProgress& state() const { return state_; }
+    bool must_stop() const;
+    /// Seconds of rendering until now; what observers took is left out.
+    double seconds() const;
+    Wavefront& wavefront() { return wavefront_; }
+    const FilmLayout& layout() const { return layout_; }
+    const WavelengthPlan& plan() const { return result_.plan; }
+    /// Returns what each pixel adds to the estimated error, for adaptive renders.
+    std::span<const float> pixel_errors();
+
+    /// The film holds so many samples now. Estimates the error, shows the pass to the observer, and
+    /// writes a checkpoint when it is time or when `goes_on`, which is asked last, says no.
+    void after_pass(std::uint32_t samples, const RenderObserver& observe,
+                    const std::function<bool(const RenderProgress&)>& goes_on);
+    bool interrupted() const { return result_.interrupted; }
+    /// Returns the result, without an image. Nothing can be rendered afterwards.
+    RenderResult finish();
+    /// Returns the result as `finish` does, with the image.
+    RenderResult finish_with_image();
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void estimate_error();
+    SpectralImage image_so_far() const;
+
+    Clock::time_point start_ = Clock::now(), rendering_;
+    const Scene& scene_;
+    const RenderOptions& options_;
+    RenderResult result_;
+    SceneTables tables_;
+    Geometry geometry_;
+    Wavefront wavefront_;
+    FilmLayout layout_;
+    CheckpointFile checkpoint_;
+    RenderProgress state_;
+    std::vector<float> errors_; ///< per pixel, if adaptive; empty before the first estimate
+    double seconds_before_ = 0.0, observing_seconds_ = 0.0;
+};
+
+} // namespace reradiant

@@ -1,0 +1,89 @@
+#include "host/scene/toml/material_reader.h"
+
+#include "host/scene/model/textured_value.h"
+#include "host/scene/toml/spectrum_reader.h"
+#include "host/spectral/evidence/matrix_warnings.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/reradiation_file.h"
+
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+namespace reradiant {
+
+namespace {
+
+constexpr std::size_t MAX_FLUOROPHORES = 64;
+
+/// Refuses what breaks energy and logs what was repaired. Returns what else there is to warn of.
+std::vector<std::string> check_and_repair(ReradiationMatrix& matrix, const SourcePosition& at,
+                                          LoadState& state) {
+    std::vector<std::string> warnings;
+    try {
+        const MatrixRepair repair = repair_for_rendering(matrix, warnings);
+        if (const std::string text = repair.text(); !text.empty())
+            state.warn(at, text);
+    } catch (const std::invalid_argument& error) {
+        throw_input_error(at, error.what());
+    }
+    return warnings;
+}
+
+void read_matrix(const TableReader& reader, Substrate& substrate, LoadState& state) {
+    const SourcePosition at = reader.position_of_key("file");
+    ReradiationMatrix matrix = read_reradiation(state.resolve_and_digest(reader.text("file"), at));
+    for (const std::string& warning : check_and_repair(matrix, at, state))
+        state.warn(at, warning);
+    substrate.reflectance = matrix.reflectance();
+    substrate.matrix = std::make_shared<const ReradiationMatrix>(std::move(matrix));
+}
+
+Fluorophore read_fluorophore(const toml::table& table, const std::string& file, std::size_t index,
+                             LoadState& state) {
+    const TableReader reader(table, file, fmt::format("fluorophore {}", index),
+                             {"excitation", "emission", "quantum_yield"});
+    Fluorophore fluorophore;
+    fluorophore.excitation =
+        read_spectrum_key(reader, "excitation", SpectrumLimits::fraction(), state);
+    fluorophore.emission = read_spectrum_key(reader, "emission", SpectrumLimits::emission(), state);
+    fluorophore.quantum_yield =
+        read_number_key_or(reader, "quantum_yield", 1.0, NumberRange::within(0.0, 1.0), state);
+    if (fluorophore.emission.is_zero_within(200.0, 1000.0))
+        reader.fail("emission", "emission is zero from 200 to 1000 nm",
+                    "give the band that the fluorophore emits");
+    return fluorophore;
+}
+
+} // namespace
+
+void read_reradiation_key(const TableReader& table, const std::string& key, Substrate& substrate,
+                          LoadState& state) {
+    if (table.plain_table(key).contains("file")) {
+        read_matrix(table.table(key, {"file"}), substrate, state);
+        return;
+    }
+    const TableReader reader = table.table(key, {"file", "fluorophores", "reflectance"});
+    const auto fluorophores = reader.tables("fluorophores");
+    if (fluorophores.empty() || fluorophores.size() > MAX_FLUOROPHORES)
+        reader.fail("fluorophores", fmt::format("{} has {} fluorophores", key, fluorophores.size()),
+                    fmt::format("give file = ... or 1 to {} fluorophores", MAX_FLUOROPHORES));
+    for (std::size_t i = 0; i < fluorophores.size(); ++i)
+        substrate.fluorophores.push_back(
+            read_fluorophore(*fluorophores[i], reader.file(), i, state));
+    if (reader.has("reflectance"))
+        substrate.reflectance =
+            read_spectrum_key(reader, "reflectance", SpectrumLimits::fraction(), state);
+    const WavelengthGrid grid = grid_from_range(300.0, 780.0, 10.0);
+    ReradiationMatrix matrix =
+        matrix_from_fluorophores(substrate.fluorophores, substrate.reflectance, grid, grid);
+    // This matrix was computed and cannot have been misread, so only the warning about photons
+    // matters.
+    const SourcePosition at = table.position_of_key(key);
+    check_and_repair(matrix, at, state);
+    if (const std::string warning = photon_warning(column_balance(matrix).photons, grid);
+        !warning.empty())
+        state.warn(at, warning);
+}
+
+} // namespace reradiant

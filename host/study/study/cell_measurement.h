@@ -1,0 +1,55 @@
+#pragma once
+
+#include "host/study/study/study_file.h"
+#include "reradiant/measure.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace reradiant {
+
+/// A `SeenColour` is what an eye and an instrument see at one pair of directions under one
+/// illuminant.
+struct SeenColour {
+    std::string illuminant;
+    double theta_i_deg = 0.0, theta_o_deg = 0.0, phi_deg = 0.0;
+    /// Perfect diffuser Y = 100; Lab against the illuminant's own white.
+    std::array<double, 3> xyz{}, lab{};
+    /// Total radiance factor of each band: of reflected and fluorescent light against the perfect
+    /// diffuser's. NaN where the illuminant is dark. May exceed 1.
+    std::vector<double> beta_t;
+    /// Photons re-radiated over photons absorbed, by the whole sample, hemispherically, at the
+    /// bands that excite; NaN when nothing fluoresces.
+    double quantum_yield = 0.0;
+};
+
+/// Luminance factor in the plane of incidence, under the first illuminant.
+struct PolarCurve {
+    double theta_i_deg = 0.0;
+    std::vector<double> angle_deg; ///< -85..85, negative on the side that the light comes from
+    std::vector<double> diffuse, total;
+};
+
+struct CellMeasurement {
+    WavelengthGrid bands;
+    std::vector<SeenColour> colours;
+    Eigen::MatrixXd matrix; ///< directional-hemispherical at the first theta_i, per-band, diffuse
+    std::vector<double> specular; ///< likewise, of light that never reached the substrate
+    std::vector<PolarCurve> polar;
+    std::vector<std::string> notes;
+};
+
+/// A lamp that colours are seen under.
+struct NamedIlluminant {
+    std::string name;
+    Spectrum spectrum;
+};
+
+/// Measures a material as a study asks. Input Error as measure_material has it.
+CellMeasurement measure_cell(const Material& material, const StudyMeasuring& measuring,
+                             const std::vector<NamedIlluminant>& illuminants);
+
+} // namespace reradiant

@@ -1,0 +1,156 @@
+#include "host/study/study/sweep_apply.h"
+
+#include "host/scene/toml/scene_table.h"
+#include "host/scene/toml/table_reader.h"
+#include "host/study/study/sample_scene.h"
+#include "host/study/study/toml_path.h"
+#include "reradiant/colour.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+namespace reradiant {
+
+namespace {
+
+/// Wavelengths that a dye's spectra are written out at when its concentration changes.
+constexpr int first_dye_nm = 200, last_dye_nm = 1000;
+
+bool is_meant(int wanted, std::size_t index) {
+    return wanted < 0 || static_cast<std::size_t>(wanted) == index;
+}
+
+/// The key that holds a light's spectrum.
+std::string spectrum_key(const toml::table& light) {
+    for (const char* key : {"intensity", "irradiance"})
+        if (light.contains(key))
+            return key;
+    return "radiance";
+}
+
+Spectrum& spectrum_of(Light& light) {
+    return const_cast<Spectrum&>(light_spectrum(light));
+}
+
+void set_lights(toml::table& scene, const ChosenValue& chosen) {
+    toml::array& lights = *scene["light"].as_array();
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        if (toml::table* const light = lights[i].as_table();
+            light != nullptr && is_meant(chosen.sweep->index, i))
+            light->insert_or_assign(spectrum_key(*light), chosen.value->node());
+}
+
+void set_key(toml::table& scene, const ChosenValue& chosen) {
+    // One word for roughness, and one for what a substrate reflects, excludes the other.
+    static const std::map<std::string, std::string> excluded{{"roughness_deg", "alpha"},
+                                                             {"alpha", "roughness_deg"},
+                                                             {"reradiation", "reflectance"},
+                                                             {"reflectance", "reradiation"}};
+    const TomlPath& path = chosen.sweep->path;
+    const toml::node& value = chosen.value->node();
+    toml::node& parent = node_at(scene, path, path.size() - 1, chosen.value->position);
+    if (toml::array* const array = parent.as_array()) {
+        const std::size_t index = element_index(*array, path.back()).value();
+        array->replace(array->begin() + static_cast<std::ptrdiff_t>(index), value);
+        return;
+    }
+    toml::table& table = *parent.as_table();
+    if (const auto other = excluded.find(path.back()); other != excluded.end())
+        table.erase(other->second);
+    if (chosen.sweep->kind == SweepKind::Matrix && value.is_string())
+        table.insert_or_assign(path.back(), toml::table{{"file", *value.value<std::string>()}});
+    else
+        table.insert_or_assign(path.back(), value);
+}
+
+void apply_to_table(toml::table& scene, const ChosenValue& chosen) {
+    switch (chosen.sweep->kind) {
+    case SweepKind::Angle:
+        set_sample_angle(scene, number_at(chosen.value->node(), chosen.value->position, "angle",
+                                          {.low = 0.0, .high = 90.0, .high_is_allowed = false}));
+        return;
+    case SweepKind::Illuminant:
+        if (!chosen.value->node().is_string())
+            set_lights(scene, chosen);
+        return;
+    case SweepKind::Concentration:
+        return;
+    case SweepKind::Key:
+    case SweepKind::Matrix:
+        set_key(scene, chosen);
+    }
+}
+
+/// More of a dye absorbs more, by Beer and Lambert: what passes is (1 - x)^c, and of that the
+/// substrate reflects the same share as before.
+void set_concentration(Substrate& substrate, int index, double concentration) {
+    std::vector<double> nm, ratio;
+    for (int wavelength = first_dye_nm; wavelength <= last_dye_nm; ++wavelength)
+        nm.push_back(wavelength);
+    ratio.assign(nm.size(), 1.0); // light that passes now over light that passed
+    for (std::size_t k = 0; k < substrate.fluorophores.size(); ++k) {
+        if (!is_meant(index, k))
+            continue;
+        std::vector<double> absorbed = substrate.fluorophores[k].excitation.at(nm);
+        for (std::size_t i = 0; i < nm.size(); ++i) {
+            const double before = 1.0 - absorbed[i];
+            const double after = std::pow(before, concentration);
+            absorbed[i] = 1.0 - after;
+            ratio[i] *= before > 0.0 ? after / before : 0.0;
+        }
+        substrate.fluorophores[k].excitation = Spectrum::table(nm, std::move(absorbed));
+    }
+    std::vector<double> reflectance = substrate.reflectance.at(nm);
+    for (std::size_t i = 0; i < nm.size(); ++i)
+        reflectance[i] *= ratio[i];
+    substrate.reflectance = Spectrum::table(std::move(nm), std::move(reflectance));
+}
+
+/// An illuminant by name keeps the light's luminance.
+void set_illuminant(Light& light, const SweepValue& value) {
+    const std::string name = *value.node().value<std::string>();
+    Spectrum& spectrum = spectrum_of(light);
+    const double luminance = xyz_of(spectrum)[1];
+    if (!(luminance > 0.0))
+        throw_input_error(value.position, "the light has no luminance for the illuminant to keep",
+                          fmt::format("write {{ illuminant = \"{}\", scale = ... }}", name));
+    try {
+        spectrum = illuminant_with_luminance(name, luminance);
+    } catch (const std::invalid_argument& error) {
+        throw_input_error(value.position, error.what());
+    }
+}
+
+/// Applies what the tables have no words for: a concentration, and an illuminant by name.
+void apply_to_scene(Scene& scene, const std::string& material, const ChosenValue& chosen) {
+    const Sweep& sweep = *chosen.sweep;
+    const SweepValue& value = *chosen.value;
+    if (sweep.kind == SweepKind::Concentration) {
+        const double concentration =
+            number_at(value.node(), value.position, "concentration", NumberRange::above(0.0));
+        for (Material& one : scene.materials)
+            if (one.name == material)
+                set_concentration(one.substrate, sweep.index, concentration);
+    }
+    if (sweep.kind == SweepKind::Illuminant && value.node().is_string())
+        for (std::size_t i = 0; i < scene.lights.size(); ++i)
+            if (is_meant(sweep.index, i))
+                set_illuminant(scene.lights[i], value);
+}
+
+} // namespace
+
+Scene scene_with(const Study& study, const std::vector<ChosenValue>& values) {
+    toml::table table = study.base;
+    for (const ChosenValue& chosen : values)
+        apply_to_table(table, chosen);
+    Scene scene = scene_from_table(table, study.base_file);
+    for (const ChosenValue& chosen : values)
+        apply_to_scene(scene, study.material, chosen);
+    return scene;
+}
+
+} // namespace reradiant

@@ -1,0 +1,35 @@
+// Tables over the cosine of an angle, in u = sqrt(cos): transmissions behave as cos near grazing,
+// a parabola in u, which cubic interpolation reproduces exactly.
+#ifndef RERADIANT_TABLE_H
+#define RERADIANT_TABLE_H
+
+#include "kernels/core/portable.h"
+#include "kernels/core/shared.h"
+
+KERNELS_BEGIN
+
+/// Four neighbouring nodes and their Lagrange weights. The stencil shifts at both ends, so it is
+/// exact for cubics everywhere. Error for smooth tables: about 3e-9 of the fourth derivative.
+typedef struct {
+    uint node;
+    real w0, w1, w2, w3;
+} TableStencil;
+
+DEVICE_FUNCTION TableStencil table_stencil(real cosine) {
+    const real position = sqrt(fmin(fmax(cosine, REAL(0.0)), REAL(1.0))) * (real)(TABLE_NODES - 1);
+    int first = (int)position - 1;
+    first = first < 0 ? 0 : first;
+    first = first > TABLE_NODES - 4 ? TABLE_NODES - 4 : first;
+    const real t = position - (real)first;
+    TableStencil s;
+    s.node = (uint)first;
+    s.w0 = (t - REAL(1.0)) * (t - REAL(2.0)) * (t - REAL(3.0)) * REAL(-0.16666666666666667);
+    s.w1 = t * (t - REAL(2.0)) * (t - REAL(3.0)) * REAL(0.5);
+    s.w2 = t * (t - REAL(1.0)) * (t - REAL(3.0)) * REAL(-0.5);
+    s.w3 = t * (t - REAL(1.0)) * (t - REAL(2.0)) * REAL(0.16666666666666667);
+    return s;
+}
+
+KERNELS_END
+
+#endif

@@ -1,0 +1,322 @@
+// Scalar side of a layered material: which component to sample, with what pdf, and the scalar
+// weights of its components. What depends on wavelength is applied in `gather` from tables.
+//
+// Components: mirror delta, rough top lobe, deeper rough lobes, and a cosine lobe that serves the
+// diffuse part, the residual of the specular part (reradiant/adding.h) and what slabs
+// scatter.
+#ifndef RERADIANT_LAYER_STACK_H
+#define RERADIANT_LAYER_STACK_H
+
+#include "kernels/core/features.h"
+#include "kernels/core/portable.h"
+#include "kernels/core/sampling.h"
+#include "kernels/core/shared.h"
+#include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/microfacet.h"
+#include "kernels/scatter/oren_nayar.h"
+
+KERNELS_BEGIN
+
+#define CHOICES (3 + LOBES)
+#define CHOICE_DELTA 0
+#define CHOICE_TOP 1
+#define CHOICE_LOBE 2
+#define CHOICE_DIFFUSE (2 + LOBES)
+
+/// Cumulative probabilities of the components at one angle, and the albedo there of the lane that
+/// reflects most, which Russian roulette uses.
+typedef struct {
+    real cumulative[CHOICES];
+    real largest_albedo;
+} LayerChoice;
+
+/// A `LayerStackView` holds what shading needs of a material.
+typedef struct {
+    MaterialRecord record;
+    GLOBAL_CONST LayerRecord* layers;
+    GLOBAL_CONST LobeRecord* lobes;
+    GLOBAL_CONST shared_float* choice;
+} LayerStackView;
+
+DEVICE_FUNCTION LayerChoice layer_stack_choice(LayerStackView stack, real cos_o) {
+    const real position = sqrt(fmin(fmax(cos_o, REAL(0.0)), REAL(1.0))) * (real)(TABLE_NODES - 1);
+    uint node = (uint)position;
+    node = node > TABLE_NODES - 2u ? TABLE_NODES - 2u : node;
+    const real t = position - (real)node;
+    GLOBAL_CONST shared_float* row = stack.choice + node * (CHOICES + 1u);
+    LayerChoice choice;
+    for (uint i = 0u; i < CHOICES; ++i)
+        choice.cumulative[i] = row[i] + t * (row[i + CHOICES + 1u] - row[i]);
+    choice.largest_albedo = row[CHOICES] + t * (row[2u * CHOICES + 1u] - row[CHOICES]);
+    return choice;
+}
+
+DEVICE_FUNCTION real layer_stack_probability(const LayerChoice* choice, uint component) {
+    return component == 0u ? choice->cumulative[0]
+                           : choice->cumulative[component] - choice->cumulative[component - 1u];
+}
+
+DEVICE_FUNCTION real layer_stack_lobe_pdf(int distribution, real alpha, Vec3 wo, Vec3 wi) {
+    const Vec3 h = vec3_normalise(vec3_add(wo, wi));
+    return microfacet_pdf(distribution, alpha, wo, h) /
+           fmax(REAL(4.0) * vec3_dot(wo, h), REAL(1e-20));
+}
+
+/// Pdf per solid angle with which `layer_stack_sample` picks wi by one of the components that are
+/// not deltas. Both directions above the surface.
+DEVICE_FUNCTION real layer_stack_pdf(LayerStackView stack, const LayerChoice* choice, Vec3 wo,
+                                     Vec3 wi) {
+    real pdf = layer_stack_probability(choice, CHOICE_DIFFUSE) * wi.z * INV_PI_REAL;
+#if FEATURE_ROUGH
+    if (stack.record.has_top_lobe) {
+        const LayerRecord top = stack.layers[0];
+        pdf += layer_stack_probability(choice, CHOICE_TOP) *
+               layer_stack_lobe_pdf((int)top.distribution, top.alpha, wo, wi);
+    }
+#endif
+#if FEATURE_DEEPER_LOBES
+    for (uint l = 0u; l < stack.record.lobe_count; ++l)
+        if (stack.lobes[l].slab == NO_INDEX)
+            pdf += layer_stack_probability(choice, CHOICE_LOBE + l) *
+                   layer_stack_lobe_pdf((int)stack.lobes[l].distribution, stack.lobes[l].alpha, wo,
+                                        wi);
+#endif
+    return pdf;
+}
+
+#if FEATURE_ROUGH || FEATURE_DEEPER_LOBES
+DEVICE_FUNCTION Vec3 layer_stack_sample_lobe(int distribution, real alpha, Vec3 wo, real u1,
+                                             real u2) {
+    const Vec3 h = microfacet_sample(distribution, alpha, wo, u1, u2);
+    return vec3_sub(vec3_scale(h, REAL(2.0) * vec3_dot(wo, h)), wo);
+}
+#endif
+
+/// Direction of one component, chosen by u0; *is_delta says whether it is the mirror. The result
+/// may lie below the surface (z <= 0): then the path ends.
+DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice* choice, Vec3 wo,
+                                        real u0, real u1, real u2, int* is_delta) {
+    *is_delta = 0;
+#if FEATURE_SMOOTH
+    if (u0 < choice->cumulative[CHOICE_DELTA]) {
+        *is_delta = 1;
+        return vec3(-wo.x, -wo.y, wo.z);
+    }
+#endif
+#if FEATURE_ROUGH
+    if (u0 < choice->cumulative[CHOICE_TOP])
+        return layer_stack_sample_lobe((int)stack.layers[0].distribution, stack.layers[0].alpha, wo,
+                                       u1, u2);
+#endif
+#if FEATURE_DEEPER_LOBES
+    for (uint l = 0u; l < stack.record.lobe_count; ++l)
+        if (u0 < choice->cumulative[CHOICE_LOBE + l])
+            return layer_stack_sample_lobe((int)stack.lobes[l].distribution, stack.lobes[l].alpha,
+                                           wo, u1, u2);
+#endif
+    return sampling_cosine(u1, u2);
+}
+
+#if FEATURE_WEIDLICH_WILKIE
+/// Two directions on their way down a stack under model A, and what its interfaces let through:
+/// way_in = product of T12, way_out = product of t (absorption not included).
+typedef struct {
+    Vec3 wi, wo;
+    real way_in, way_out;
+} LayerDescent;
+
+/// One part of model A between two directions just above it (Weidlich and Wilkie 2007,
+/// eq. 3-5); both are refracted into the medium below at the macroscopic normal. Nothing passes
+/// when one of them is totally reflected.
+DEVICE_FUNCTION void layer_stack_cross(LayerRecord layer, real eta, LayerDescent* d) {
+    real t12, t;
+    if (layer.coverage > 0.0f) { // a sheet of flakes
+        d->way_in *= REAL(1.0) - layer.coverage;
+        d->way_out *= REAL(1.0) - layer.coverage;
+        return;
+    }
+    if (layer.reflectance != NO_INDEX) {
+        t12 = t = REAL(1.0); // a film: in the tables, by each direction and wavelength
+    } else if (layer.alpha > 0.0f) {
+        const Vec3 h = vec3_normalise(vec3_add(d->wi, d->wo));
+        t12 = REAL(1.0) - fresnel_dielectric(fmax(vec3_dot(d->wi, h), REAL(0.0)), eta);
+        const real g = microfacet_g2((int)layer.distribution, layer.alpha, d->wi, d->wo, h);
+        t = (REAL(1.0) - g) + t12 * g;
+    } else {
+        t12 = REAL(1.0) - fresnel_dielectric(d->wi.z, eta);
+        t = REAL(1.0) - fresnel_dielectric(d->wo.z, eta);
+    }
+    const real cos_i = fresnel_cos_transmitted(d->wi.z, eta);
+    const real cos_o = fresnel_cos_transmitted(d->wo.z, eta);
+    const int passes = cos_i > REAL(0.0) && cos_o > REAL(0.0);
+    d->way_in = passes ? d->way_in * t12 : REAL(0.0);
+    d->way_out = passes ? d->way_out * t : REAL(0.0);
+    d->wi = vec3(d->wi.x / eta, d->wi.y / eta, cos_i);
+    d->wo = vec3(d->wo.x / eta, d->wo.y / eta, cos_o);
+}
+
+/// Takes two directions down the first `count` parts. The IOR ratios are those of the records, or,
+/// with `lane_etas` not null, lane_etas[layer.eta_lanes].
+DEVICE_FUNCTION LayerDescent layer_stack_descend(GLOBAL_CONST LayerRecord* layers, uint count,
+                                                 GLOBAL_CONST shared_float* lane_etas, Vec3 wi,
+                                                 Vec3 wo) {
+    LayerDescent descent;
+    descent.wi = wi;
+    descent.wo = wo;
+    descent.way_in = REAL(1.0);
+    descent.way_out = REAL(1.0);
+    for (uint k = 0u; k < count && descent.way_in > REAL(0.0); ++k)
+        layer_stack_cross(layers[k], lane_etas ? lane_etas[layers[k].eta_lanes] : layers[k].eta,
+                          &descent);
+    return descent;
+}
+
+/// Two directions at one part of a stack under model A, and the cosine at the facet that reflects
+/// one into the other.
+typedef struct {
+    Vec3 wi, wo;
+    real through, cos_h;
+} LayerFacet;
+
+DEVICE_FUNCTION LayerFacet layer_stack_facet(GLOBAL_CONST LayerRecord* layers, uint index,
+                                             GLOBAL_CONST shared_float* lane_etas, Vec3 wi,
+                                             Vec3 wo) {
+    const LayerDescent above = layer_stack_descend(layers, index, lane_etas, wi, wo);
+    const Vec3 h = vec3_normalise(vec3_add(above.wi, above.wo));
+    LayerFacet facet;
+    facet.wi = above.wi;
+    facet.wo = above.wo;
+    facet.through = above.way_in * above.way_out;
+    facet.cos_h = fmax(vec3_dot(above.wi, h), REAL(0.0));
+    return facet;
+}
+
+/// Value of a rough part's lobe under model A between the directions just above it, seen through
+/// the parts above (absorption not included, nor what is tabulated of its reflectance). 1/sr, no
+/// cosine.
+DEVICE_FUNCTION real layer_stack_part_lobe(LayerRecord layer, real eta, LayerFacet facet) {
+    real reflectance = REAL(1.0);
+    if (!(facet.through > REAL(0.0)))
+        return REAL(0.0);
+    if (layer.coverage > 0.0f)
+        reflectance = layer.coverage;
+    else if (layer.reflectance == NO_INDEX)
+        reflectance = fresnel_dielectric(facet.cos_h, eta);
+    return facet.through * reflectance *
+           microfacet_reflection((int)layer.distribution, layer.alpha, facet.wi, facet.wo);
+}
+#endif
+
+#if FEATURE_SCATTERING_SLABS
+/// Henyey and Greenstein 1941, 1/sr over the sphere; (1 - g)^2 + 2 g (1 - cos) keeps its digits
+/// where g is near 1.
+DEVICE_FUNCTION real layer_stack_phase(real g, real cos_deflection) {
+    const real d = g < REAL(0.0)
+                       ? square(REAL(1.0) + g) - REAL(2.0) * g * (REAL(1.0) + cos_deflection)
+                       : square(REAL(1.0) - g) + REAL(2.0) * g * (REAL(1.0) - cos_deflection);
+    return (REAL(1.0) - g) * (REAL(1.0) + g) * REAL(0.25) * INV_PI_REAL /
+           (d * sqrt(fmax(d, REAL(1e-30))));
+}
+#endif
+
+#if FEATURE_WEIDLICH_WILKIE
+/// Value of a deeper lobe under model A at what layer_stack_facet says of its part. A slab's is
+/// single scattering (Hanrahan and Krueger 1993, eq. 5): through p / (cos_i + cos_o), to be
+/// multiplied per lane by albedo (1 - exp(-tau (1 / cos_i + 1 / cos_o))). 1/sr, no cosine.
+DEVICE_FUNCTION real layer_stack_nested_lobe(GLOBAL_CONST LayerRecord* layers, LobeRecord lobe,
+                                             GLOBAL_CONST shared_float* lane_etas,
+                                             LayerFacet facet) {
+#if FEATURE_SCATTERING_SLABS
+    if (lobe.slab != NO_INDEX) {
+        if (!(facet.through > REAL(0.0)))
+            return REAL(0.0);
+        // light comes along -wi and leaves along wo
+        return facet.through * layer_stack_phase(lobe.alpha, -vec3_dot(facet.wi, facet.wo)) /
+               (facet.wi.z + facet.wo.z);
+    }
+#endif
+    const LayerRecord layer = layers[lobe.layer];
+    return layer_stack_part_lobe(layer, lane_etas ? lane_etas[layer.eta_lanes] : layer.eta, facet);
+}
+#endif
+
+/// Scalar value of a deeper lobe, to be multiplied by its two amplitudes (and by what model A
+/// evaluates per lane). 1/sr, no cosine.
+#if FEATURE_DEEPER_LOBES
+DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi, Vec3 wo) {
+#if FEATURE_WEIDLICH_WILKIE
+    if (stack.record.weidlich_wilkie == MODEL_A_PER_LANE)
+        return REAL(1.0);
+    if (stack.record.weidlich_wilkie == MODEL_A)
+        return layer_stack_nested_lobe(
+            stack.layers, stack.lobes[lobe], 0,
+            layer_stack_facet(stack.layers, stack.lobes[lobe].layer, 0, wi, wo));
+#endif
+    return microfacet_reflection((int)stack.lobes[lobe].distribution, stack.lobes[lobe].alpha, wi,
+                                 wo);
+}
+#endif
+
+/// Scalar value of the rough top lobe, Fresnel included unless it depends on wavelength.
+#if FEATURE_ROUGH
+DEVICE_FUNCTION real layer_stack_top(LayerStackView stack, Vec3 wi, Vec3 wo) {
+    const LayerRecord top = stack.layers[0];
+    const real lobe = microfacet_reflection((int)top.distribution, top.alpha, wi, wo);
+    if (top.eta_lanes != NO_INDEX || top.reflectance != NO_INDEX)
+        return lobe;
+    const Vec3 h = vec3_normalise(vec3_add(wi, wo));
+    return lobe * fresnel_dielectric(fmax(vec3_dot(wi, h), REAL(0.0)), top.eta);
+}
+#endif
+
+/// Scalar factors of the diffuse part: of its operator, and of that for light that met an
+/// Oren-Nayar substrate once.
+typedef struct {
+    real diffuse, first;
+} LayerDiffuse;
+
+#if FEATURE_OREN_NAYAR
+/// Returns the weights of the diffuse part for two directions in air, refracted down to the
+/// substrate (by the IOR at the reference wavelength): where its first bounce stands apart, the
+/// weights `rest` and `first` of host/layers/models/oren_nayar_substrate.h; else pi f / rho.
+DEVICE_FUNCTION LayerDiffuse layer_stack_oren_nayar(MaterialRecord record, Vec3 wi, Vec3 wo) {
+    const real n = record.lowest_ior;
+    const Vec3 below_i = vec3(wi.x / n, wi.y / n, fresnel_cos_transmitted(wi.z, n));
+    const Vec3 below_o = vec3(wo.x / n, wo.y / n, fresnel_cos_transmitted(wo.z, n));
+    LayerDiffuse weights;
+    weights.first = REAL(0.0);
+    weights.diffuse = PI_REAL * oren_nayar_value(record.sigma, below_i, below_o);
+    if (record.first_diagonal != NO_INDEX) {
+        const real mean = oren_nayar_mean_albedo(record.sigma);
+        const real product =
+            oren_nayar_albedo(record.sigma, below_i.z) * oren_nayar_albedo(record.sigma, below_o.z);
+        weights.first = weights.diffuse - product / mean;
+        weights.diffuse = product / square(mean);
+    }
+    return weights;
+}
+#endif
+
+/// Returns the factors of the diffuse part: 1, or model A's interfaces (without absorption) where
+/// they do not depend on wavelength, and Oren-Nayar's shape.
+DEVICE_FUNCTION LayerDiffuse layer_stack_diffuse(LayerStackView stack, Vec3 wi, Vec3 wo) {
+    LayerDiffuse factor;
+    factor.diffuse = REAL(1.0);
+    factor.first = REAL(0.0);
+#if FEATURE_OREN_NAYAR
+    if (stack.record.sigma > 0.0f)
+        factor = layer_stack_oren_nayar(stack.record, wi, wo);
+#endif
+#if FEATURE_WEIDLICH_WILKIE
+    if (stack.record.weidlich_wilkie == MODEL_A) {
+        const LayerDescent descent =
+            layer_stack_descend(stack.layers, stack.record.layer_count, 0, wi, wo);
+        factor.diffuse *= descent.way_in * descent.way_out;
+    }
+#endif
+    return factor;
+}
+
+KERNELS_END
+
+#endif

@@ -1,0 +1,85 @@
+// The state of a walk, its connections to the light's half and its roulette (walk.h).
+#ifndef RERADIANT_WALK_STATE_H
+#define RERADIANT_WALK_STATE_H
+
+#include "kernels/core/features.h"
+#include "kernels/core/portable.h"
+#include "kernels/core/shared.h"
+#include "kernels/walk/walk_events.h"
+#include "kernels/walk/walk_interface.h"
+#include "kernels/walk/walk_light.h"
+
+/// Steps that a walk makes before each one is put under roulette, and what survives it: it bounds
+/// the time where nothing absorbs.
+#define WALK_FREE_STEPS 200u
+#define WALK_STEP_SURVIVAL 0.95f
+/// Below this guess of what it carries a walk is put under roulette, and survives at least at the
+/// second.
+#define WALK_ROULETTE 0.5f
+#define WALK_LEAST_SURVIVAL 0.05f
+
+typedef struct {
+    WalkStack stack;
+    WalkPosition at;
+    const WalkArrival* arrivals; ///< of the light (WALK_PLACES)
+    WalkWriter writer;
+    WalkRandom random;
+    real weight;
+    float expected; ///< weight times what events leave of the lane that keeps most
+    int is_delta;   ///< smooth surfaces alone so far
+    uint steps;
+    uint reference; ///< which extinction scattering distances are sampled with
+    float log_densities[WALK_REFERENCES]; ///< of all distances so far, under each
+} Walk;
+
+/// A `WalkEnd` is how a walk through a stack ended: its direction in air, and the weight of the
+/// radiance that comes from there.
+typedef struct {
+    Vec3 direction;
+    float weight; ///< 0: it ended inside
+    float expected;
+    int is_delta;
+} WalkEnd;
+
+/// The balance heuristic over the extinctions that the walk might have taken (one is drawn per
+/// walk): 1 where no slab scatters. Bounds the weights of lanes that scatter unlike the drawn one.
+float walk_balance(const Walk* walk) {
+#if FEATURE_SCATTERING_SLABS
+    float sum = 0.0f;
+    for (uint r = 0u; r < WALK_REFERENCES; ++r)
+        sum += exp(walk->log_densities[r] - walk->log_densities[walk->reference]);
+    return WALK_REFERENCES / sum;
+#else
+    return 1.0f;
+#endif
+}
+
+/// Records that the light's arrival is seen from here with a density (1/sr, cosine included).
+/// Returns 0 when nothing is; else events of the light's way may follow.
+int walk_connect(Walk* walk, const WalkArrival* light, float density) {
+    const float value = walk->weight * density * light->fluence * walk_balance(walk);
+    if (!(value > 0.0f))
+        return 0;
+    walk_write(&walk->writer, WALK_CODE(WALK_CONNECT, 0u), value);
+    for (uint k = 0u; k < walk->stack.count; ++k)
+        if (light->lengths[k] > 0.0f && walk->stack.parts[k].extinction != NO_INDEX)
+            walk_write(&walk->writer, WALK_CODE(WALK_LIGHT_PASS, k), light->lengths[k]);
+    for (uint i = 0u; i < light->mirrors; ++i)
+        walk_write(&walk->writer, WALK_CODE(WALK_LIGHT_REFLECT, walk->stack.count),
+                   light->mirror_cosine);
+    return 1;
+}
+
+/// Russian roulette by the guess of what is left, and by the number of steps.
+int walk_survives(Walk* walk) {
+    float survival = walk->steps > WALK_FREE_STEPS ? WALK_STEP_SURVIVAL : 1.0f;
+    if (walk->expected < WALK_ROULETTE)
+        survival *= fmax(walk->expected, WALK_LEAST_SURVIVAL);
+    if (!(survival < 1.0f))
+        return 1;
+    walk->weight /= survival;
+    walk->expected /= survival;
+    return walk_uniform(&walk->random) < survival;
+}
+
+#endif
