@@ -19,8 +19,8 @@ __global const float* lane_etas(const GatherContext* context, uint lane) {
 void model_a_ways(const GatherContext* context, Vec3 wi, Vec3 wo, Lanes* way_in, Lanes* way_out) {
     for (uint i = 0u; i < PATH_CHUNKS * PATH_WIDTH; ++i) {
         const LayerDescent descent =
-            layer_stack_descend(context->layers, context->material.layer_count,
-                                lane_etas(context, path_lane(context, i)), wi, wo);
+            model_a_descend(context->layers, context->material.layer_count,
+                            lane_etas(context, path_lane(context, i)), wi, wo);
         ((float*)way_in)[i] = descent.way_in;
         ((float*)way_out)[i] = descent.way_out;
     }
@@ -57,8 +57,8 @@ Lanes model_a_lobe(const GatherContext* context, LobeRecord lobe, Vec3 wi, Vec3 
     for (uint i = 0u; i < PATH_WIDTH; ++i) {
         const uint lane = path_lane(context, chunk * PATH_WIDTH + i);
         __global const float* etas = lane_etas(context, lane);
-        const LayerFacet facet = layer_stack_facet(context->layers, lobe.layer, etas, wi, wo);
-        const float value = layer_stack_nested_lobe(context->layers, lobe, etas, facet);
+        const LayerFacet facet = model_a_facet(context->layers, lobe.layer, etas, wi, wo);
+        const float value = model_a_nested_lobe(context->layers, lobe, etas, facet);
         ((float*)&result)[i] =
             value > 0.0f ? value * model_a_tabulated_lane(context, lobe, facet, lane) : 0.0f;
     }
@@ -100,7 +100,7 @@ Lanes top_reflectance(const GatherContext* context, Vec3 wi, Vec3 wo, uint chunk
 /// model_a_tabulated_lane does for one lane.
 Lanes model_a_tabulated(const GatherContext* context, LobeRecord lobe, Vec3 wi, Vec3 wo,
                         uint chunk) {
-    const LayerFacet facet = layer_stack_facet(context->layers, lobe.layer, 0, wi, wo);
+    const LayerFacet facet = model_a_facet(context->layers, lobe.layer, 0, wi, wo);
 #if FEATURE_SCATTERING_SLABS
     if (lobe.slab != NO_INDEX) {
         __global const float* slab = context->tables + lobe.slab + context->phase * LANES;

@@ -104,22 +104,10 @@ private:
         return k > 0 ? layers_[k - 1].ior(reference_nm) : 1.0;
     }
 
-    /// The table that kernels/walk/walk_cavities.h reads.
     std::uint32_t append_cavities(const LostFlux& flux) {
         const std::uint32_t offset = lanes_.here();
-        const auto append_all = [this](const std::vector<double>& values) {
-            for (const double value : values)
-                lanes_.append(value);
-        };
-        const std::vector<LostFlux::Cells>& sides = flux.sides();
-        for (std::size_t side = 0; side < 2; ++side)
-            lanes_.append(side < sides.size() ? static_cast<double>(sides[side].lost.size()) : 0.0);
-        lanes_.append(flux.cumulative().back());
-        for (const LostFlux::Cells& cells : sides) {
-            append_all(cells.edges);
-            append_all(cells.lost);
-        }
-        append_all(flux.cumulative());
+        for (const double value : flux.table())
+            lanes_.append(value);
         return offset;
     }
 
