@@ -6,9 +6,7 @@
 #include "kernels/stack/layer_stack.h"
 #include "kernels/stages/gather_lanes.h"
 
-#if FEATURE_DISPERSION && FEATURE_WEIDLICH_WILKIE
-#define FEATURE_MODEL_A_PER_LANE 1
-
+#if FEATURE_MODEL_A_PER_LANE
 /// IOR ratios of one lane: add a layer's eta_lanes.
 __global const float* lane_etas(const GatherContext* context, uint lane) {
     return context->tables + (size_t)context->phase * LANES + lane;
@@ -65,8 +63,6 @@ Lanes model_a_lobe(const GatherContext* context, LobeRecord lobe, Vec3 wi, Vec3 
     return result;
 }
 #endif
-#else
-#define FEATURE_MODEL_A_PER_LANE 0
 #endif
 
 #if FEATURE_ROUGH
@@ -92,10 +88,7 @@ Lanes top_reflectance(const GatherContext* context, Vec3 wi, Vec3 wo, uint chunk
 }
 #endif
 
-#if FEATURE_DEEPER_LOBES && FEATURE_WEIDLICH_WILKIE &&                                             \
-    (FEATURE_SCATTERING_SLABS || FEATURE_TABULATED_REFLECTANCE)
-#define FEATURE_MODEL_A_TABULATED 1
-
+#if FEATURE_MODEL_A_TABULATED
 /// Returns the factor that the tables add to a deeper lobe of model A for one vector of lanes, as
 /// model_a_tabulated_lane does for one lane.
 Lanes model_a_tabulated(const GatherContext* context, LobeRecord lobe, Vec3 wi, Vec3 wo,
@@ -116,8 +109,6 @@ Lanes model_a_tabulated(const GatherContext* context, LobeRecord lobe, Vec3 wi, 
 #endif
     return (Lanes)(1.0f);
 }
-#else
-#define FEATURE_MODEL_A_TABULATED 0
 #endif
 
 #if FEATURE_DEEPER_LOBES

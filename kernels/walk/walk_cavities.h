@@ -11,6 +11,7 @@
 #include "kernels/core/portable.h"
 #include "kernels/core/sampling.h"
 #include "kernels/core/shared.h"
+#include "kernels/core/table.h"
 #include "kernels/walk/walk_facets.h"
 
 KERNELS_BEGIN
@@ -35,15 +36,7 @@ DEVICE_FUNCTION WalkCavitySide walk_cavity_side(WalkTable table, int dense) {
 
 /// Index of the last of `count` ascending numbers that is not above x; 0 when all are.
 DEVICE_FUNCTION uint walk_last_below(WalkTable numbers, uint count, real x) {
-    uint low = 0u, high = count;
-    while (high - low > 1u) {
-        const uint middle = (low + high) / 2u;
-        if ((real)numbers[middle] <= x)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
+    return table_search(numbers + 1, count - 1u, 1u, x);
 }
 
 /// Share of the light from a cosine that single scattering loses.
