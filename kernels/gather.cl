@@ -10,14 +10,15 @@
 #include "kernels/stages/gather_walk.h"
 
 /// A path's radiance leaves the emitter that it ended on.
-void gather_emitter(const GatherScene* scene, const GatherContext* context,
-                    const VertexRecord* vertex, Lanes* radiance) {
+static void gather_emitter(const GatherScene* scene, const GatherContext* context,
+                           const VertexRecord* vertex, Lanes* radiance) {
     for (uint c = 0u; c < PATH_CHUNKS; ++c)
         radiance[c] = vertex->emitted * emission(scene, context, vertex->emitter, c);
 }
 
 /// `radiance` holds what comes along `next` and receives what leaves the vertex.
-void gather_vertex(const GatherScene* scene, GatherContext* context, size_t slot, Lanes* radiance) {
+static void gather_vertex(const GatherScene* scene, GatherContext* context, size_t slot,
+                          Lanes* radiance) {
     const VertexRecord vertex = scene->vertices[slot];
     context->colour = scene->colours;
 #if FEATURE_COLOURS

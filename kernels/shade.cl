@@ -11,8 +11,8 @@
 #include "kernels/stages/shade_walk.h"
 
 /// The colour that an image gives the substrate's reflectance here is kept for `gather`.
-void keep_reflectance_colour(const ShadeScene* scene, MaterialRecord material,
-                             const ShadeStep* step) {
+static void keep_reflectance_colour(const ShadeScene* scene, MaterialRecord material,
+                                    const ShadeStep* step) {
 #if FEATURE_REFLECTANCE_IMAGE
     if (material.reflectance_image == NO_INDEX)
         return;
@@ -24,7 +24,7 @@ void keep_reflectance_colour(const ShadeScene* scene, MaterialRecord material,
 }
 
 /// A path at a surface: a vertex, a shadow ray, a way to go on.
-void shade_surface(const ShadeScene* scene, ShadeStep* step) {
+static void shade_surface(const ShadeScene* scene, ShadeStep* step) {
     const SurfacePoint point = surface_point(scene, step);
     const MaterialRecord material = scene->materials[point.material];
     step->state.vertex_count = step->depth + 1u;

@@ -31,7 +31,7 @@ typedef struct {
 #define GATHER_LEFT up
 #endif
 
-void clear_sums(GatherSums* sums) {
+static void clear_sums(GatherSums* sums) {
     for (uint c = 0u; c < PATH_CHUNKS; ++c) {
         sums->down[c] = (Lanes)(0.0f);
         sums->GATHER_FIRST[c] = (Lanes)(0.0f);
@@ -41,8 +41,9 @@ void clear_sums(GatherSums* sums) {
 }
 
 /// Adds what one direction brings, its weights in `d` and `lobe_weights`.
-void gather_one(const GatherContext* context, DirectionRecord d, Vec3 wo, TableStencil so,
-                __global const float* lobe_weights, const Lanes* radiance, GatherSums* sums) {
+static void gather_one(const GatherContext* context, DirectionRecord d, Vec3 wo, TableStencil so,
+                       __global const float* lobe_weights, const Lanes* radiance,
+                       GatherSums* sums) {
     gather_direction(context, d, wo, so, lobe_weights, radiance, sums->down, sums->GATHER_FIRST,
                      sums->up);
 #if FEATURE_MODEL_A_PER_LANE
@@ -52,8 +53,8 @@ void gather_one(const GatherContext* context, DirectionRecord d, Vec3 wo, TableS
 }
 
 /// `radiance` holds what comes along `next` and receives what leaves the vertex.
-void gather_layers(const GatherScene* scene, const GatherContext* context,
-                   const VertexRecord* vertex, size_t slot, int lit, Lanes* radiance) {
+static void gather_layers(const GatherScene* scene, const GatherContext* context,
+                          const VertexRecord* vertex, size_t slot, int lit, Lanes* radiance) {
     const Vec3 wo = vec3(vertex->out_x, vertex->out_y, vertex->out_z);
     const TableStencil so = table_stencil(wo.z);
     __global const float* lobe_weights = scene->lobe_weights + slot * (2u * LOBES);

@@ -74,8 +74,8 @@ void replay_walk(const GatherContext* context, WalkReader reader, uint reference
 }
 
 /// Radiance that leaves a vertex which was walked through; `radiance` as in gather_layers.
-void gather_walk(const GatherScene* scene, const GatherContext* context, const VertexRecord* vertex,
-                 size_t slot, int lit, Lanes* radiance) {
+static void gather_walk(const GatherScene* scene, const GatherContext* context,
+                        const VertexRecord* vertex, size_t slot, int lit, Lanes* radiance) {
     const WalkVertexRecord walk = scene->walk_vertices[slot];
     Lanes light[PATH_CHUNKS];
     const float weight = vertex->has_next ? walk.weight : 0.0f;

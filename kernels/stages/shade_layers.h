@@ -18,8 +18,8 @@ LayerStackView layer_stack_of(const ShadeScene* scene, uint material) {
 }
 
 /// The scalar weights of all components in one direction; `scale` holds cos / pdf.
-DirectionRecord direction_weights(LayerStackView stack, Vec3 wi, Vec3 wo, real scale,
-                                  __global float* lobe_weights) {
+static DirectionRecord direction_weights(LayerStackView stack, Vec3 wi, Vec3 wo, real scale,
+                                         __global float* lobe_weights) {
     DirectionRecord d = {wi.x, wi.y, wi.z, 0.0f, 0.0f, scale, 0.0f, 0.0f};
     const LayerDiffuse factors = layer_stack_diffuse(stack, wi, wo);
     d.diffuse = scale * factors.diffuse;
@@ -37,8 +37,8 @@ DirectionRecord direction_weights(LayerStackView stack, Vec3 wi, Vec3 wo, real s
 
 #if FEATURE_LIGHT_SAMPLING
 /// Samples one light; the vertex gets its weights and the step its shadow ray.
-void connect_layers(const ShadeScene* scene, SurfacePoint point, LayerStackView stack,
-                    const LayerChoice* choice, Random4 u, ShadeStep* step) {
+static void connect_layers(const ShadeScene* scene, SurfacePoint point, LayerStackView stack,
+                           const LayerChoice* choice, Random4 u, ShadeStep* step) {
     Vec3 wi;
     const LightSample sample = look_for_light(scene, point, u, &wi, step);
     if (!(sample.weight > 0.0f))
@@ -54,8 +54,8 @@ void connect_layers(const ShadeScene* scene, SurfacePoint point, LayerStackView 
 #endif
 
 /// The mirror direction's weights; nothing of the other components goes there.
-DirectionRecord mirror_weights(LayerStackView stack, Vec3 wi, real probability,
-                               __global float* lobe_weights) {
+static DirectionRecord mirror_weights(LayerStackView stack, Vec3 wi, real probability,
+                                      __global float* lobe_weights) {
     DirectionRecord mirror = {wi.x, wi.y, wi.z, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
     mirror.delta = 1.0f / probability;
 #if FEATURE_DEEPER_LOBES
@@ -66,8 +66,8 @@ DirectionRecord mirror_weights(LayerStackView stack, Vec3 wi, real probability,
 }
 
 /// Samples the direction in which the path goes on. It ends where none leaves the surface.
-void leave_layers(SurfacePoint point, LayerStackView stack, const LayerChoice* choice, Random4 u,
-                  real survival, ShadeStep* step) {
+static void leave_layers(SurfacePoint point, LayerStackView stack, const LayerChoice* choice,
+                         Random4 u, real survival, ShadeStep* step) {
     int is_delta;
     const Vec3 wi = layer_stack_sample(stack, choice, point.wo, u.a, u.b, u.c, &is_delta);
     const Vec3 direction = sampling_to_world(point.frame, wi);
@@ -88,8 +88,8 @@ void leave_layers(SurfacePoint point, LayerStackView stack, const LayerChoice* c
 }
 
 /// u_light: chooses light and direction; u: direction and survival.
-void shade_layers(const ShadeScene* scene, SurfacePoint point, Random4 u_light, Random4 u,
-                  ShadeStep* step) {
+static void shade_layers(const ShadeScene* scene, SurfacePoint point, Random4 u_light, Random4 u,
+                         ShadeStep* step) {
     const LayerStackView stack = layer_stack_of(scene, point.material);
     const LayerChoice choice = layer_stack_choice(stack, point.wo.z);
 #if FEATURE_LIGHT_SAMPLING

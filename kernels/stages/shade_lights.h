@@ -60,7 +60,7 @@ int is_on_emitter(HitRecord hit) {
 }
 
 /// Ends a path on an emitter, with a vertex where it sees some light there.
-void end_on_emitter(const ShadeScene* scene, ShadeStep* step) {
+static void end_on_emitter(const ShadeScene* scene, ShadeStep* step) {
     VertexRecord* vertex = &step->vertex;
     const HitRecord hit = step->hit;
 #if FEATURE_ENVIRONMENT
@@ -89,8 +89,8 @@ void end_on_emitter(const ShadeScene* scene, ShadeStep* step) {
 /// Looks for one light, chosen by selection probability, into a direction towards it: fills *wi in
 /// the local frame and the step's shadow ray, and notes the light. Weight 0 where no light can
 /// contribute, and then there is no ray.
-LightSample look_for_light(const ShadeScene* scene, SurfacePoint point, Random4 u, Vec3* wi,
-                           ShadeStep* step) {
+static LightSample look_for_light(const ShadeScene* scene, SurfacePoint point, Random4 u, Vec3* wi,
+                                  ShadeStep* step) {
     const uint chosen = lights_choose(scene->lights, scene->render.sampled_lights, u.a);
     const LightRecord light = scene->lights[chosen];
     LightSample sample;

@@ -114,7 +114,7 @@ uint choose_material(const ShadeScene* scene, HitRecord hit, Random4 u, Vec3 to_
 
 /// The frame stands on the shading normal, or on the geometric one where the shading normal faces
 /// away from the camera.
-SurfacePoint surface_point(const ShadeScene* scene, const ShadeStep* step) {
+static SurfacePoint surface_point(const ShadeScene* scene, const ShadeStep* step) {
     const HitRecord hit = step->hit;
     const Vec3 to_camera = vec3_scale(ray_direction(step->ray), -1.0f);
     SurfacePoint point;

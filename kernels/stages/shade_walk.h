@@ -30,8 +30,8 @@ Walk walk_of(const ShadeScene* scene, MaterialRecord material, const ShadeStep* 
 
 /// Walks, connected to one light where lights are sampled. u_light: chooses light and direction;
 /// u: survival.
-void shade_walk(const ShadeScene* scene, SurfacePoint point, MaterialRecord material,
-                Random4 u_light, real u, ShadeStep* step) {
+static void shade_walk(const ShadeScene* scene, SurfacePoint point, MaterialRecord material,
+                       Random4 u_light, real u, ShadeStep* step) {
     Walk walk = walk_of(scene, material, step);
     WalkArrival arrivals[WALK_PLACES];
     walk_clear_arrivals(arrivals);

@@ -204,9 +204,7 @@ private:
     bool count_cavities(const WalkSurface& surface) {
         if (!surface.lost)
             return false;
-        plan_.counts.floats += 3 + surface.lost->cumulative().size();
-        for (const LostFlux::Cells& side : surface.lost->sides())
-            plan_.counts.floats += side.edges.size() + side.lost.size();
+        plan_.counts.floats += surface.lost->table().size();
         return true;
     }
 
