@@ -56,18 +56,18 @@ double scatter_once(const kernels::WalkSurface& facets, const Vec3& wi, WalkNumb
     const Facet facet = facet_response(facets, wi, u1, u2);
     if (facet.cos_i <= 0.0)
         return 0.0;
-    const auto leaves = [&](double share, const Vec3& wo, double cos_o) {
-        return share * kernels::walk_drawn_share(facets, wi, facet.h, wo, cos_o);
+    const auto leaves = [&](double share, const Vec3& wo) {
+        return share *
+               kernels::walk_drawn_share(facets, wi, facet.h, wo, kernels::vec3_dot(wo, facet.h));
     };
     double reflected = 0.0;
     if (facet.reflected.z > 0.0) {
-        reflected = leaves(facet.reflectance, facet.reflected, facet.cos_i);
+        reflected = leaves(facet.reflectance, facet.reflected);
         departures.push_back({true, facet.reflected.z, reflected});
     }
     if (facet.refracted.z > 0.0 && facet.reflectance < 1.0) {
-        const double cos_t = kernels::fresnel_cos_transmitted(facet.cos_i, facets.eta);
         departures.push_back(
-            {false, facet.refracted.z, leaves(1.0 - facet.reflectance, facet.refracted, cos_t)});
+            {false, facet.refracted.z, leaves(1.0 - facet.reflectance, facet.refracted)});
     }
     return reflected;
 }

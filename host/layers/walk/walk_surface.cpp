@@ -16,7 +16,8 @@ using kernels::Vec3;
 
 namespace {
 
-/// Between the frames of the two sides.
+/// Between the frames of the two sides; so the cosine of what a facet refracts is that with its
+/// normal, as if it were reflected.
 Vec3 turned_over(const Vec3& w) {
     return kernels::vec3_scale(w, -1.0);
 }
@@ -121,23 +122,26 @@ SurfaceEvent scatter_in_cavity(const Side& side, const Vec3& v, WalkRandom& rand
         const double cos_v = kernels::vec3_dot(v, h);
         if (!(cos_v > 0.0))
             continue;
-        const auto offer = [&](bool reflects, double share, double cos_w) {
+        const auto offer = [&](bool reflects, double share) {
             const Vec3 w = side.leave(v, h, reflects);
             arrives += share / facets;
+            if (!(w.z > 0.0))
+                return;
             const double kept =
-                w.z > 0.0 ? share * kernels::walk_drawn_share(side.facets, v, h, w, cos_w) : 0.0;
+                share / facets *
+                kernels::walk_drawn_share(side.facets, v, h, w, kernels::vec3_dot(w, h));
             if (!(kept > 0.0))
                 return;
-            event.weight += kept / facets;
-            if (random.next() * event.weight < kept / facets) {
+            event.weight += kept;
+            if (random.next() * event.weight < kept) {
                 event.same_side = reflects;
                 event.w = w;
             }
         };
         const double r = side.reflectance(cos_v);
-        offer(true, r, cos_v);
+        offer(true, r);
         if (!side.surface.is_conductor)
-            offer(false, 1.0 - r, kernels::fresnel_cos_transmitted(cos_v, side.facets.eta));
+            offer(false, 1.0 - r);
     }
     event.lost = (side.surface.is_conductor ? arrives : 1.0) - event.weight;
     return event;
