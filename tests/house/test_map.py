@@ -102,6 +102,25 @@ class Map(unittest.TestCase):
         self.assertEqual([name for name in named if not (HOST / name).exists() and not (ROOT / name).exists()], [])
 
 
+class Features(unittest.TestCase):
+    def test_kernels_ask_for_bits_that_there_are(self):
+        """The preprocessor takes a name that nobody defines, a misspelt bit, for 0."""
+        kernels = [path for path in (ROOT / "kernels").rglob("*") if path.suffix in (".h", ".cl")]
+        defined, asked = {"FEATURE_BIT"}, set()
+        for path in kernels:
+            text = path.read_text()
+            defined |= set(re.findall(r"#define (FEATURE_\w+)", text))
+            asked |= set(re.findall(r"\bFEATURE_\w+", text))
+        self.assertGreater(len(defined), 20)
+        self.assertEqual(sorted(asked - defined), [])
+
+    def test_bits_and_their_names_agree(self):
+        blocks = re.findall(r"FEATURE_BIT\((\w+),[^)]*\)\n#elif !defined\((\w+)\)\n#define (\w+) 1\n",
+                            (ROOT / "kernels/core/feature_bits.h").read_text())
+        self.assertGreater(len(blocks), 20)
+        self.assertEqual([block for block in blocks if set(block[1:]) != {"FEATURE_" + block[0].upper()}], [])
+
+
 class Documents(unittest.TestCase):
     def test_links_lead_somewhere(self):
         broken = []

@@ -80,7 +80,8 @@ SceneTables random_tables(RandomMaterials& random, Model model, int count) {
     const WavelengthPlan plan = plan_wavelengths(scene, grid_from_range(450, 650, 100), options);
     while (static_cast<int>(tables.materials.size()) < count) {
         try {
-            append_material(random.material(), model, plan, lobes, tables);
+            const Material taken = random.material();
+            append_material(taken, plan_material(taken, {model, ""}, plan), plan, lobes, tables);
         } catch (const Error& error) {
             EXPECT_EQ(error.exit_code(), 2) << error.what();
         }

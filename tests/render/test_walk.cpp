@@ -161,17 +161,18 @@ TEST(Walk, SameSeedGivesTheSameImageWhateverTheBatch) {
 TEST(Walk, LeavesNothingWhereNoMaterialAsksForIt) {
     Scene scene = strips_scene({over_grey({layer(1.5)})});
     scene.lights = sun.lights;
-    const WavelengthPlan plan = plan_wavelengths(scene, bands, {});
-    const SceneTables without = build_scene_tables(scene, plan, Model::Auto);
+    RenderOptions options;
+    options.bands = bands;
+    const RenderPlan without = plan_render(scene, device().info(), options);
     EXPECT_FALSE(without.features.walk);
-    EXPECT_TRUE(without.walk_parts.empty());
-    const std::vector<std::string> lines = without.features.left_out();
+    EXPECT_TRUE(build_scene_tables(scene, without).walk_parts.empty());
+    const std::vector<std::string> lines = without.left_out();
     EXPECT_NE(std::find(lines.begin(), lines.end(), "walk: no material uses the model walk"),
               lines.end());
     scene.materials.front().model = Model::Walk;
-    const SceneTables with = build_scene_tables(scene, plan, Model::Auto);
+    const RenderPlan with = plan_render(scene, device().info(), options);
     EXPECT_TRUE(with.features.walk);
-    EXPECT_EQ(with.walk_parts.size(), 2u);
+    EXPECT_EQ(build_scene_tables(scene, with).walk_parts.size(), 2u);
 }
 
 void expect_refusal(const Material& refused, const char* text) {

@@ -23,7 +23,7 @@ TEST_F(CheckCommand, ReportsEveryFunctionAndEndsWithZero) {
     ASSERT_EQ(result.exit_code, 0) << result.errors;
     const auto json = nlohmann::json::parse(file_bytes(folder / "check.json"));
     EXPECT_TRUE(json["passed"]);
-    ASSERT_EQ(json["functions"].size(), 3U);
+    ASSERT_EQ(json["functions"].size(), 4U);
     for (const auto& function : json["functions"]) {
         EXPECT_LE(function["of_budget"].get<double>(), 1.0);
         EXPECT_GT(function["nanoseconds"].get<double>(), 0.0);

@@ -1,10 +1,9 @@
 #include "host/layers/models/weidlich_wilkie.h"
 
 #include "host/layers/rough/facet_reflectance.h"
-#include "kernels/scatter/fresnel.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
-#include "kernels/stack/layer_stack.h"
+#include "kernels/stack/model_a.h"
 
 #include <cmath>
 #include <numbers>
@@ -16,13 +15,11 @@ using kernels::Vec3;
 namespace {
 
 /// A `Descent` holds both directions on their way down, in a medium of index `ior`, and what the
-/// parts above let through each way; both are 0 once one of the directions was totally reflected.
-struct Descent {
-    Vec3 wi, wo;
+/// parts above let through each way.
+struct Descent : kernels::LayerDescent {
     double ior = 1.0;
-    double in = 1.0, out = 1.0;
 
-    double through() const { return in * out; }
+    double through() const { return way_in * way_out; }
     bool passes() const { return wi.z > 0.0 && wo.z > 0.0; }
 };
 
@@ -32,39 +29,24 @@ double passage(double tau, double cosine) {
     return tau > 0.0 ? std::exp(-tau / cosine) : 1.0;
 }
 
-/// A direction of the medium above refracted at the macroscopic normal; z = 0 beyond the critical
-/// angle.
-Vec3 refract_macroscopic(const Vec3& w, double eta) {
-    return kernels::vec3(w.x / eta, w.y / eta, kernels::fresnel_cos_transmitted(w.z, eta));
-}
-
-/// Crosses an interface: T12 on the way in, t = (1 - G) + T21 G on the way out. T21 at the
-/// refracted direction equals T12 at the direction above.
+/// A film lets through what it does not reflect at the normal of the surface, however rough.
 void cross_interface(const LayerValues& layer, Descent& d) {
-    double cos_i = d.wi.z, cos_o = d.wo.z, g = 1.0;
-    if (layer.alpha > 0.0 && layer.film.thickness_nm == 0.0) {
-        const Vec3 h = kernels::vec3_normalise(kernels::vec3_add(d.wi, d.wo));
-        cos_i = kernels::vec3_dot(d.wi, h);
-        cos_o = kernels::vec3_dot(d.wo, h);
-        g = kernels::microfacet_g2(kernel_distribution(layer.distribution), layer.alpha, d.wi, d.wo,
-                                   h);
-    }
-    d.in *= 1.0 - facet_reflectance(layer, d.ior, cos_i);
-    d.out *= (1.0 - g) + (1.0 - facet_reflectance(layer, d.ior, cos_o)) * g;
-    d.wi = refract_macroscopic(d.wi, layer.ior / d.ior);
-    d.wo = refract_macroscopic(d.wo, layer.ior / d.ior);
+    const double alpha = layer.film.thickness_nm == 0.0 ? layer.alpha : 0.0;
+    const kernels::LayerMeeting meeting =
+        kernels::model_a_meeting(kernel_distribution(layer.distribution), alpha, d.wi, d.wo);
+    kernels::model_a_cross(&d, meeting, layer.ior / d.ior,
+                           1.0 - facet_reflectance(layer, d.ior, meeting.cos_i),
+                           1.0 - facet_reflectance(layer, d.ior, meeting.cos_o));
     d.ior = layer.ior;
-    if (!d.passes())
-        d.in = d.out = 0.0;
 }
 
 /// Calls visit(layer, part, descent) with the directions just above each part from the air down,
 /// until one of them is totally reflected; returns what arrives at the substrate.
 template <typename Visit>
 Descent descend(const StackValues& stack, const Vec3& wi, const Vec3& wo, const Visit& visit) {
-    Descent d{wi, wo};
+    Descent d{kernels::model_a_start(wi, wo)};
     if (!d.passes())
-        d.in = d.out = 0.0;
+        kernels::model_a_pass(&d, 0.0, 0.0);
     for (const LayerValues& layer : stack) {
         if (!d.passes())
             return d;
@@ -74,12 +56,10 @@ Descent descend(const StackValues& stack, const Vec3& wi, const Vec3& wo, const 
             return d;
         visit(layer, Part::Slab, d);
         const double tau = layer.tau + layer.tau_scattering;
-        d.in *= passage(tau, d.wi.z);
-        d.out *= passage(tau, d.wo.z);
+        kernels::model_a_pass(&d, passage(tau, d.wi.z), passage(tau, d.wo.z));
         if (layer.flake_coverage > 0.0) {
             visit(layer, Part::Sheet, d);
-            d.in *= 1.0 - layer.flake_coverage;
-            d.out *= 1.0 - layer.flake_coverage;
+            kernels::model_a_pass(&d, 1.0 - layer.flake_coverage, 1.0 - layer.flake_coverage);
         }
     }
     return d;
@@ -105,14 +85,12 @@ double mirror(const Reflector& reflector, const Descent& d) {
     return reflector.alpha > 0.0 ? 0.0 : facet_reflectance(reflector, d.ior, d.wi.z);
 }
 
-/// Light that comes along -wi, is scattered once and leaves along wo.
+/// Light that a slab scatters once.
 double slab_lobe(const LayerValues& layer, const Descent& d) {
     if (!(layer.tau_scattering > 0.0))
         return 0.0;
     const double tau = layer.tau + layer.tau_scattering;
-    const double phase =
-        kernels::layer_stack_phase(layer.anisotropy, -kernels::vec3_dot(d.wi, d.wo));
-    return -layer.tau_scattering / tau * phase / (d.wi.z + d.wo.z) *
+    return kernels::model_a_slab(-layer.tau_scattering / tau, layer.anisotropy, d.wi, d.wo) *
            std::expm1(-tau * (1.0 / d.wi.z + 1.0 / d.wo.z));
 }
 
@@ -168,11 +146,11 @@ double WeidlichWilkie::specular_delta(const StackValues& stack, double cos_theta
 }
 
 double WeidlichWilkie::way_in(const StackValues& stack, const Vec3& wi, const Vec3& wo) {
-    return arrive(stack, wi, wo).in;
+    return arrive(stack, wi, wo).way_in;
 }
 
 double WeidlichWilkie::way_out(const StackValues& stack, const Vec3& wi, const Vec3& wo) {
-    return arrive(stack, wi, wo).out;
+    return arrive(stack, wi, wo).way_out;
 }
 
 double WeidlichWilkie::diffuse_shape(const StackValues& stack, double sigma, const Vec3& wi,

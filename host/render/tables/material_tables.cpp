@@ -1,3 +1,4 @@
+#include "host/render/plan/material_plan.h"
 #include "host/render/tables/choice_tables.h"
 #include "host/render/tables/scene_tables.h"
 #include "host/render/tables/stack_parts.h"
@@ -17,28 +18,28 @@ namespace {
 /// Builds one material's records and tables.
 class MaterialTables {
 public:
-    MaterialTables(const Material& material, Model model, const WavelengthPlan& plan, int lobes,
-                   SceneTables& out)
-        : material_(material), model_(model), lobes_(lobes), out_(out), lanes_(plan, out.tables),
-          optics_(material, model, plan), parts_(stack_parts(material)) {}
+    MaterialTables(const Material& material, const MaterialPlan& plan,
+                   const WavelengthPlan& wavelengths, int lobes, SceneTables& out)
+        : material_(material), plan_(plan), lobes_(lobes), out_(out),
+          lanes_(wavelengths, out.tables), optics_(material, plan.choice.model, wavelengths),
+          parts_(stack_parts(material)) {}
 
     void append() {
         record_.walk = NO_INDEX;
         record_.spectral = optics_.is_spectral() ? 1u : 0u;
-        out_.features.spectral_stack |= optics_.is_spectral();
         note_thick_films();
         append_layers();
-        choose_evaluation();
+        append_evaluation();
         append_lobes();
         append_stack();
-        const LaneOperator substrate =
-            append_substrate(material_, model_, optics_, lanes_, record_, out_);
+        const LaneOperator substrate = append_substrate(material_, plan_.choice.model, optics_,
+                                                        *plan_.on_cells, lanes_, record_, out_);
         record_.choice = append_choice(optics_, substrate, lobes_, lanes_);
         out_.materials.push_back(record_);
     }
 
 private:
-    bool is_model_a() const { return model_ == Model::WeidlichWilkie; }
+    bool is_model_a() const { return plan_.choice.model == Model::WeidlichWilkie; }
 
     /// A cubic between 65 nodes over the cosine's square root follows three fringes to 1 %.
     void note_thick_films() {
@@ -89,33 +90,21 @@ private:
             out_.layers.push_back(layer);
             record_.layer_count += part.kind == StackPart::Kind::Conductor ? 0u : 1u;
         }
-        const bool has_top = !parts_.empty() && parts_.front().alpha > 0.0;
-        record_.has_top_lobe = has_top ? 1u : 0u;
-        out_.features.rough |= has_top;
+        record_.has_top_lobe = plan_.features.rough ? 1u : 0u;
     }
 
     LayerRecord& layer_record(std::size_t part) { return out_.layers[record_.first_layer + part]; }
 
-    /// Chooses what the kernels evaluate for themselves, and whether lane by lane, and appends the
-    /// tables that they need for it.
-    void choose_evaluation() {
-        const bool nested = is_model_a() && !is_all_smooth(material_);
-        const bool dispersive = material_.stack.is_dispersive();
-        record_.weidlich_wilkie = !nested ? 0u : dispersive ? MODEL_A_PER_LANE : MODEL_A;
-        out_.features.weidlich_wilkie |= nested;
-        if (nested && dispersive)
-            append_ior_ratios(parts_.size());
-        else if (record_.has_top_lobe != 0u && !material_.stack.layers.empty() &&
-                 !material_.stack.layers.front().ior.is_constant())
-            append_ior_ratios(1);
-        for (std::size_t p = 0; nested && p < parts_.size(); ++p)
-            if (is_tabulated(parts_[p]))
-                append_reflectance(p);
+    /// Appends the tables that kernels need for what they evaluate for themselves.
+    void append_evaluation() {
+        record_.weidlich_wilkie = plan_.model_a;
+        append_ior_ratios(plan_.ior_ratios);
+        for (const std::size_t p : plan_.tabulated)
+            append_reflectance(p);
     }
 
     /// IOR below over IOR above per lane, for the interfaces among the first `count` parts.
     void append_ior_ratios(std::size_t count) {
-        out_.features.dispersion = true;
         for (std::size_t p = 0; p < count; ++p) {
             const std::size_t k = parts_[p].layer;
             layer_record(p).eta_lanes = lanes_.append_lanes([&](int phase, int lane) {
@@ -128,14 +117,7 @@ private:
         }
     }
 
-    /// Fresnel's bare dielectric is the only reflectance that kernels know by themselves.
-    bool is_tabulated(const StackPart& part) const {
-        return part.kind != StackPart::Kind::Interface ||
-               (film_of(part) && film_of(part)->thickness_nm > 0.0);
-    }
-
     void append_reflectance(std::size_t p) {
-        out_.features.tabulated_reflectance = true;
         layer_record(p).reflectance =
             lanes_.append_nodes_of_lanes([&](double cosine, int phase, int lane) {
                 return material_at(material_, lanes_.plan().wavelength_nm(lane, phase))
@@ -159,8 +141,6 @@ private:
             }
             out_.lobes.push_back(lobe);
         }
-        out_.features.deeper_lobes |= !lobes.empty();
-        out_.features.scattering_slabs |= material_.stack.scatters();
     }
 
     /// [2][phase][lane]: optical depth, then the share of it that scatters.
@@ -180,8 +160,6 @@ private:
         return offset;
     }
 
-    using AngularValue = double (StackOptics::*)(double) const;
-
     /// [node] for a stack whose optics are grey, [phase][node][lane] for a spectral one.
     std::uint32_t append_nodes(const std::function<double(const StackOptics&, double)>& value) {
         if (!optics_.is_spectral())
@@ -190,15 +168,10 @@ private:
             [&](double c, int phase, int lane) { return value(optics_.at(phase, lane), c); });
     }
 
-    std::uint32_t append_if_positive(AngularValue value) {
-        return optics_.is_ever_positive(value) ? append_nodes(value) : NO_INDEX;
-    }
-
     void append_stack() {
         record_.transmission = append_nodes(&StackOptics::transmission);
-        record_.delta = append_if_positive(&StackOptics::delta);
-        out_.features.smooth |= record_.delta != NO_INDEX;
-        record_.residual = append_if_positive(&StackOptics::residual);
+        record_.delta = plan_.has_delta ? append_nodes(&StackOptics::delta) : NO_INDEX;
+        record_.residual = plan_.has_residual ? append_nodes(&StackOptics::residual) : NO_INDEX;
         record_.amplitude = NO_INDEX;
         for (std::uint32_t l = 0; l < record_.lobe_count; ++l) {
             const std::uint32_t offset = append_nodes([l](const StackOptics& o, double c) {
@@ -210,7 +183,7 @@ private:
     }
 
     const Material& material_;
-    Model model_;
+    const MaterialPlan& plan_;
     int lobes_;
     SceneTables& out_;
     LaneTables lanes_;
@@ -221,9 +194,9 @@ private:
 
 } // namespace
 
-void append_material(const Material& material, Model model, const WavelengthPlan& plan, int lobes,
-                     SceneTables& tables) {
-    MaterialTables(material, model, plan, lobes, tables).append();
+void append_material(const Material& material, const MaterialPlan& plan,
+                     const WavelengthPlan& wavelengths, int lobes, SceneTables& tables) {
+    MaterialTables(material, plan, wavelengths, lobes, tables).append();
 }
 
 } // namespace reradiant

@@ -77,15 +77,14 @@ int adding_lobe_count(const LayerStack& stack) {
     return count;
 }
 
-/// Returns true when something that the tables by the angle hold depends on wavelength.
+} // namespace
+
 bool depends_on_wavelength(const Material& material) {
     const Conductor& metal = material.substrate.conductor;
     return !material.stack.is_constant() ||
            (material.substrate.type == SubstrateType::Conductor &&
             !(metal.ior.is_constant() && metal.kappa.is_constant() && !metal.film));
 }
-
-} // namespace
 
 int deeper_lobe_count(const Material& material, Model model) {
     return model == Model::WeidlichWilkie ? static_cast<int>(weidlich_wilkie_lobes(material).size())
@@ -109,14 +108,6 @@ MaterialOptics::MaterialOptics(const Material& material, Model model, const Wave
             spectral_ ? plan.wavelength_nm(i % lanes_, i / lanes_) : reference_nm;
         optics_[static_cast<std::size_t>(i)] = stack_optics(material, model, wavelength);
     });
-}
-
-bool MaterialOptics::is_ever_positive(double (StackOptics::*value)(double) const) const {
-    for (const auto& optics : optics_)
-        for (int node = 0; node < TABLE_NODES; ++node)
-            if ((optics.get()->*value)(node_cosine(node)) > 0.0)
-                return true;
-    return false;
 }
 
 } // namespace reradiant

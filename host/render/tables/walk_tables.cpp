@@ -2,11 +2,8 @@
 
 #include "host/layers/rough/facet_reflectance.h"
 #include "host/layers/walk/walk_surface.h"
+#include "host/render/plan/material_plan.h"
 #include "host/render/tables/substrate_tables.h"
-#include "host/scene/model/model_choice.h"
-#include "reradiant/error.h"
-
-#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,13 +18,6 @@ namespace {
 /// where a lane's is smaller still, weights bounded by WALK_REFERENCES make up for it.
 constexpr double least_reference = 1e-3;
 
-void check_material(const Material& material) {
-    if (const std::optional<std::string> refusal = device_walk_refusal(material))
-        throw_input_error(material.position,
-                          fmt::format("material '{}': {}", material.name, *refusal),
-                          "use weidlich-wilkie or adding, or measure the material by walk");
-}
-
 /// A surface of a stack, or of its substrate; nothing beneath it yet.
 WalkPartRecord surface_part(double alpha, Distribution distribution, Scattering scattering) {
     WalkPartRecord part{};
@@ -40,13 +30,6 @@ WalkPartRecord surface_part(double alpha, Distribution distribution, Scattering 
     part.extinction = part.scattering = part.flakes = NO_INDEX;
     return part;
 }
-
-/// A slab's optical depths at normal passage, all phases and lanes.
-struct SlabDepths {
-    std::vector<double> absorption, scattering;
-
-    double extinction(std::size_t i) const { return absorption[i] + scattering[i]; }
-};
 
 /// Extinctions in equal ratios from the smallest lane's to the largest's, and the largest albedo.
 void set_references(const SlabDepths& depths, WalkPartRecord& part) {
@@ -68,9 +51,10 @@ void set_references(const SlabDepths& depths, WalkPartRecord& part) {
 
 class WalkTables {
 public:
-    WalkTables(const Material& material, const WavelengthPlan& plan, SceneTables& out)
-        : material_(material), layers_(material.stack.layers), out_(out), lanes_(plan, out.tables) {
-    }
+    WalkTables(const Material& material, const MaterialPlan& plan,
+               const WavelengthPlan& wavelengths, SceneTables& out)
+        : material_(material), layers_(material.stack.layers), plan_(plan), out_(out),
+          lanes_(wavelengths, out.tables) {}
 
     void append() {
         record_.walk = static_cast<std::uint32_t>(out_.walk_parts.size());
@@ -79,9 +63,6 @@ public:
             append_layer(k);
         append_substrate_part();
         append_flakes();
-        out_.features.walk = true;
-        out_.features.walk_layers =
-            std::max(out_.features.walk_layers, static_cast<int>(layers_.size()));
         out_.materials.push_back(record_);
     }
 
@@ -95,7 +76,7 @@ private:
         const WalkSurface surface = interface_surface(stack_at(material_.stack, reference_nm), k);
         if (surface.lost)
             part.cavities = append_cavities(*surface.lost);
-        append_slab(layer, part);
+        append_slab(plan_.slabs[k], layer.anisotropy, part);
         out_.walk_parts.push_back(part);
     }
 
@@ -104,54 +85,28 @@ private:
         return k > 0 ? layers_[k - 1].ior(reference_nm) : 1.0;
     }
 
-    /// The table that kernels/walk/walk_cavities.h reads.
     std::uint32_t append_cavities(const LostFlux& flux) {
         const std::uint32_t offset = lanes_.here();
-        const auto append_all = [this](const std::vector<double>& values) {
-            for (const double value : values)
-                lanes_.append(value);
-        };
-        const std::vector<LostFlux::Cells>& sides = flux.sides();
-        for (std::size_t side = 0; side < 2; ++side)
-            lanes_.append(side < sides.size() ? static_cast<double>(sides[side].lost.size()) : 0.0);
-        lanes_.append(flux.cumulative().back());
-        for (const LostFlux::Cells& cells : sides) {
-            append_all(cells.edges);
-            append_all(cells.lost);
-        }
-        append_all(flux.cumulative());
+        for (const double value : flux.table())
+            lanes_.append(value);
         return offset;
     }
 
-    std::vector<double> depths_of(const Spectrum& coefficient, double thickness) const {
-        std::vector<double> depths;
-        for (int phase = 0; phase < lanes_.phases(); ++phase)
-            for (int lane = 0; lane < lanes_.lanes(); ++lane)
-                depths.push_back(thickness * coefficient(lanes_.plan().wavelength_nm(lane, phase)));
-        return depths;
-    }
-
-    void append_slab(const Layer& layer, WalkPartRecord& part) {
-        const SlabDepths depths{depths_of(layer.absorption, layer.thickness),
-                                depths_of(layer.scattering_coefficient, layer.thickness)};
-        const auto& [absorption, scattering] = depths;
-        const bool absorbs = *std::max_element(absorption.begin(), absorption.end()) > 0.0;
-        const bool scatters = *std::max_element(scattering.begin(), scattering.end()) > 0.0;
-        if (!absorbs && !scatters)
+    void append_slab(const SlabDepths& depths, double anisotropy, WalkPartRecord& part) {
+        if (!depths.absorbs() && !depths.scatters())
             return;
         const auto at = [this](int phase, int lane) {
             return static_cast<std::size_t>(phase * lanes_.lanes() + lane);
         };
-        part.least_depth =
-            static_cast<float>(*std::min_element(absorption.begin(), absorption.end()));
+        part.least_depth = static_cast<float>(
+            *std::min_element(depths.absorption.begin(), depths.absorption.end()));
         part.extinction = lanes_.append_lanes(
             [&](int phase, int lane) { return depths.extinction(at(phase, lane)); });
-        if (!scatters)
+        if (!depths.scatters())
             return;
-        out_.features.scattering_slabs = true;
         part.scattering = lanes_.append_lanes(
             [&](int phase, int lane) { return depths.scattering[at(phase, lane)]; });
-        part.anisotropy = static_cast<float>(layer.anisotropy);
+        part.anisotropy = static_cast<float>(anisotropy);
         set_references(depths, part);
     }
 
@@ -161,7 +116,7 @@ private:
         bare.stack.layers.clear();
         const MaterialOptics optics(bare, Model::Adding, lanes_.plan());
         const LaneOperator middle =
-            append_substrate(bare, Model::Adding, optics, lanes_, record_, out_);
+            append_substrate(bare, Model::Adding, optics, *plan_.on_cells, lanes_, record_, out_);
         if (material_.substrate.type == SubstrateType::Conductor) {
             append_conductor(material_.substrate.conductor, ior_of_medium(layers_.size()));
             return;
@@ -194,7 +149,6 @@ private:
                 return surface(lanes_.plan().wavelength_nm(lane, phase)).lost_reflectance;
             });
         }
-        out_.features.tabulated_reflectance = true;
         out_.walk_parts.push_back(part);
     }
 
@@ -212,6 +166,7 @@ private:
 
     const Material& material_;
     const std::vector<Layer>& layers_;
+    const MaterialPlan& plan_;
     SceneTables& out_;
     LaneTables lanes_;
     MaterialRecord record_{};
@@ -219,10 +174,9 @@ private:
 
 } // namespace
 
-void append_walk_material(const Material& material, const WavelengthPlan& plan,
-                          SceneTables& tables) {
-    check_material(material);
-    WalkTables(material, plan, tables).append();
+void append_walk_material(const Material& material, const MaterialPlan& plan,
+                          const WavelengthPlan& wavelengths, SceneTables& tables) {
+    WalkTables(material, plan, wavelengths, tables).append();
 }
 
 } // namespace reradiant
