@@ -43,7 +43,7 @@ void add_walk(int distribution, double alpha, const Vec3& wi, WalkNumbers number
     shares(meeting - 2) += weight;
 }
 
-Eigen::MatrixXd walked_orders(const AddingTransport::Lobe& lobe) {
+Eigen::MatrixXd walked_orders(const LobeShape& lobe) {
     const WalkStream stream(walk_rule, 0);
     const CosineTable once = lobe_albedo(lobe);
     Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(CosineTable::nodes, orders);
@@ -64,7 +64,7 @@ Eigen::MatrixXd walked_orders(const AddingTransport::Lobe& lobe) {
 
 } // namespace
 
-std::shared_ptr<const Eigen::MatrixXd> facet_orders(const AddingTransport::Lobe& lobe) {
+std::shared_ptr<const Eigen::MatrixXd> facet_orders(const LobeShape& lobe) {
     static std::mutex mutex;
     static std::map<std::pair<Distribution, double>, std::shared_ptr<const Eigen::MatrixXd>> known;
     const std::scoped_lock lock(mutex);
