@@ -4,6 +4,7 @@
 #include "kernels/core/features.h"
 #include "kernels/core/portable.h"
 #include "kernels/core/shared.h"
+#include "kernels/stages/arguments.h"
 
 #define FILM_ROWS (3 + FEATURE_BAND_VARIANCE)
 
@@ -12,7 +13,8 @@ int16 film_not_finite(float16 v) {
     return (as_int16(v) & (int16)(0x7f800000)) == (int16)(0x7f800000);
 }
 
-/// A path's radiance in film lanes; returns 0 when some lane is not finite.
+/// A path's radiance in film lanes; returns 0 when some lane is not finite. bands: [LANES], where a
+/// lane goes; weights: [LANES][2], its weight there and in the band above.
 int film_read(__global const float* path, __global const int* bands, __global const float* weights,
               float16* value) {
     int16 bad = (int16)(0);
@@ -36,6 +38,22 @@ int film_read(__global const float* path, __global const int* bands, __global co
     return !any(bad);
 }
 
+/// Adds a value to a pixel's rows [FILM_ROWS][FILM_LANES]: sum, its compensation, alternating sum
+/// (even minus odd samples), sum of squares.
+void film_add(const float16* value, float sign, __global float* rows) {
+    for (uint c = 0u; c < FILM_CHUNKS; ++c) {
+        const float16 sum = vload16(c, rows);
+        const float16 corrected = value[c] - vload16(c, rows + FILM_LANES);
+        const float16 next = sum + corrected;
+        vstore16((next - sum) - corrected, c, rows + FILM_LANES);
+        vstore16(next, c, rows);
+        vstore16(vload16(c, rows + 2 * FILM_LANES) + sign * value[c], c, rows + 2 * FILM_LANES);
+#if FEATURE_BAND_VARIANCE
+        vstore16(vload16(c, rows + 3 * FILM_LANES) + value[c] * value[c], c, rows + 3 * FILM_LANES);
+#endif
+    }
+}
+
 float film_luminance(const float16* value, __global const float* y_weights) {
     float16 y16 = (float16)(0.0f);
     for (uint c = 0u; c < FILM_CHUNKS; ++c)
@@ -45,50 +63,54 @@ float film_luminance(const float16* value, __global const float* y_weights) {
     return (y4.x + y4.y) + (y4.z + y4.w);
 }
 
-/// sums: [pixel][FILM_ROWS][FILM_LANES]: sum, its compensation, alternating sum (even minus odd
-/// samples), sum of squares. statistics: [pixel][6]: sums of Y and of Y^2, their compensations,
-/// samples refused, and (an integer) samples taken, of the strip that begins with `first_pixel`.
-/// bands: [phase][LANES], where a lane goes; weights: [phase][LANES][2], its weight there and in
-/// the band above.
-__kernel void film(__global float* sums, __global float* statistics, __global const float* radiance,
-                   __global const PathState* paths, __global const int* bands,
-                   __global const float* weights, __global const float* y_weights, uint first_pixel,
-                   uint samples, uint pixel_count) {
+/// What is kept of a pixel besides its bands: sums of Y and of Y^2, their compensations, samples
+/// refused, and (an integer) samples taken.
+typedef struct {
+    float2 y, y_compensation;
+    float refused;
+    uint taken;
+} FilmStatistics;
+
+FilmStatistics film_statistics(__global const float* from) {
+    const FilmStatistics statistics = {vload2(0, from), vload2(1, from), from[4], as_uint(from[5])};
+    return statistics;
+}
+
+void film_store_statistics(FilmStatistics statistics, __global float* to) {
+    vstore2(statistics.y, 0, to);
+    vstore2(statistics.y_compensation, 1, to);
+    to[4] = statistics.refused;
+    ((__global uint*)to)[5] = statistics.taken;
+}
+
+void film_add_luminance(float y, FilmStatistics* statistics) {
+    const float2 corrected = (float2)(y, y * y) - statistics->y_compensation;
+    const float2 next = statistics->y + corrected;
+    statistics->y_compensation = (next - statistics->y) - corrected;
+    statistics->y = next;
+}
+
+__kernel void film(KERNEL_SIGNATURE(FILM_ARGUMENTS)) {
     const uint pixel = (uint)get_global_id(0);
-    if (pixel >= pixel_count)
+    if (pixel >= batch.pixels)
         return;
-    const size_t at = paths[(size_t)pixel * samples].pixel - first_pixel;
-    __global float* base = sums + at * (FILM_ROWS * FILM_LANES);
-    statistics += at * FILM_STATISTICS;
-    float2 y_sum = vload2(0, statistics), y_compensation = vload2(1, statistics);
-    for (uint s = 0u; s < samples; ++s) {
-        const size_t path = (size_t)pixel * samples + s;
-        const uint offset = paths[path].phase * LANES;
+    const size_t first = (size_t)pixel * batch.samples;
+    const size_t at = paths[first].pixel - batch.strip_pixel;
+    __global float* rows = sums + at * (FILM_ROWS * FILM_LANES);
+    FilmStatistics kept = film_statistics(statistics + at * FILM_STATISTICS);
+
+    for (size_t path = first; path < first + batch.samples; ++path) {
+        const uint lanes = paths[path].phase * LANES;
         float16 value[FILM_CHUNKS];
-        if (!film_read(radiance + path * LANES, bands + offset, weights + 2u * offset, value)) {
-            statistics[4] += 1.0f;
+        ++kept.taken;
+        if (!film_read(radiance + path * LANES, film_bands + lanes, film_weights + 2u * lanes,
+                       value)) {
+            kept.refused += 1.0f;
             continue;
         }
-        const float sign = (paths[path].sample & 1u) ? -1.0f : 1.0f;
-        for (uint c = 0u; c < FILM_CHUNKS; ++c) {
-            const float16 sum = vload16(c, base);
-            const float16 corrected = value[c] - vload16(c, base + FILM_LANES);
-            const float16 next = sum + corrected;
-            vstore16((next - sum) - corrected, c, base + FILM_LANES);
-            vstore16(next, c, base);
-            vstore16(vload16(c, base + 2 * FILM_LANES) + sign * value[c], c, base + 2 * FILM_LANES);
-#if FEATURE_BAND_VARIANCE
-            vstore16(vload16(c, base + 3 * FILM_LANES) + value[c] * value[c], c,
-                     base + 3 * FILM_LANES);
-#endif
-        }
-        const float y = film_luminance(value, y_weights);
-        const float2 corrected = (float2)(y, y * y) - y_compensation;
-        const float2 next = y_sum + corrected;
-        y_compensation = (next - y_sum) - corrected;
-        y_sum = next;
+        film_add(value, (paths[path].sample & 1u) ? -1.0f : 1.0f, rows);
+        film_add_luminance(film_luminance(value, y_weights), &kept);
     }
-    ((__global uint*)statistics)[5] += samples;
-    vstore2(y_sum, 0, statistics);
-    vstore2(y_compensation, 1, statistics);
+
+    film_store_statistics(kept, statistics + at * FILM_STATISTICS);
 }

@@ -1,44 +1,37 @@
-// Stage 1: camera rays. One work-item a path; path = local pixel * samples + local sample. The
-// batch's pixels follow each other from `first_pixel` on and go on with the same sample, or, where
-// they are `listed`, they are those of `pixels` from there on, each with its own.
+// Stage 1: camera rays. One work-item a path; path = local pixel * samples + local sample.
 #include "kernels/core/features.h"
 #include "kernels/core/portable.h"
 #include "kernels/core/sequence.h"
 #include "kernels/core/shared.h"
 #include "kernels/core/wavelength.h"
 #include "kernels/scene/camera.h"
+#include "kernels/stages/arguments.h"
+#include "kernels/stages/rays.h"
 
-__kernel void generate(__global RayRecord* rays, __global PathState* paths,
-                       __global const PixelSamples* pixels, uint listed, CameraRecord camera,
-                       uint first_pixel, uint first_sample, uint samples, uint path_count,
-                       uint phases, uint sequence_blocks, uint seed) {
+/// The pixel and the sample that are a path's own.
+PixelSamples path_sample(BatchRecord batch, __global const PixelSamples* chosen, uint path) {
+    const uint place = batch.first_pixel + path / batch.samples;
+    PixelSamples own = {place, 0u};
+    if (batch.chosen != 0u)
+        own = chosen[place];
+    own.first_sample += batch.first_sample + path % batch.samples;
+    return own;
+}
+
+__kernel void generate(KERNEL_SIGNATURE(GENERATE_ARGUMENTS)) {
     const uint path = (uint)get_global_id(0);
-    if (path >= path_count)
+    if (path >= batch.pixels * batch.samples)
         return;
-    const uint place = first_pixel + path / samples;
-    const uint pixel = listed != 0u ? pixels[place].pixel : place;
-    const uint sample =
-        first_sample + path % samples + (listed != 0u ? pixels[place].first_sample : 0u);
-    const Random4 u = path_numbers(pixel, sample, 0u, sequence_blocks, seed).first;
-    const CameraRay camera_space = camera_ray(camera, (real)(pixel % camera.width) + u.b,
-                                              (real)(pixel / camera.width) + u.c, u.a, u.d);
-    RayRecord ray;
-    ray.origin_x = camera_space.origin.x;
-    ray.origin_y = camera_space.origin.y;
-    ray.origin_z = camera_space.origin.z;
-    ray.t_near = 0.0f;
-    ray.direction_x = camera_space.direction.x;
-    ray.direction_y = camera_space.direction.y;
-    ray.direction_z = camera_space.direction.z;
-    ray.t_far = INFINITY;
-    rays[path] = ray;
+    const PixelSamples own = path_sample(batch, chosen, path);
+    const uint pixel = own.pixel, sample = own.first_sample;
 
-    PathState state;
-    state.pixel = pixel;
-    state.sample = sample;
-    state.phase = wavelength_phase(pixel, sample, phases, seed);
-    state.vertex_count = 0u;
-    state.bsdf_pdf = -1.0f;
-    state.throughput = 1.0f;
+    const Random4 u = path_numbers(pixel, sample, 0u, render.sequence_blocks, render.seed).first;
+    const CameraRay ray = camera_ray(render.camera, (real)(pixel % render.camera.width) + u.b,
+                                     (real)(pixel / render.camera.width) + u.c, u.a, u.d);
+    const PathState state = {
+        pixel, sample, wavelength_phase(pixel, sample, render.phases, render.seed),
+        0u,    -1.0f,  1.0f};
+
+    rays[path] = ray_record(ray.origin, ray.direction, INFINITY);
     paths[path] = state;
 }

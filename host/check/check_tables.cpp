@@ -62,6 +62,8 @@ void fill_lights(CheckTables& tables) {
     directional.type = LIGHT_DIRECTIONAL;
     const LightRecord lights[] = {rectangle, sphere, point, directional};
     std::copy(std::begin(lights), std::end(lights), tables.lights);
+    for (int i = 0; i < CHECK_LIGHTS; ++i)
+        tables.lights[i].cumulative = 0.25f * static_cast<float>(i + 1);
 }
 
 void fill_camera(CameraRecord& camera) {

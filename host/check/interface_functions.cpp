@@ -1,6 +1,7 @@
 #include "host/check/checked_function.h"
 
 #include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/henyey_greenstein.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
 #include "kernels/scatter/thin_film.h"
@@ -26,13 +27,18 @@ std::vector<CheckedFunction> fresnel_functions() {
         CHECKED_FUNCTION("fresnel_dielectric", "kernels/scatter/fresnel.h",
                          (Arguments{cosine(), ior()}), 1, reflectance,
                          out[0] = fresnel_dielectric(in[0], in[1])),
-        CHECKED_FUNCTION("fresnel_cos_transmitted", "kernels/scatter/fresnel.h",
-                         (Arguments{cosine(), ior()}), 1,
-                         (Accuracy{1e-5, 1e-3, "falls as a root at the critical angle"}),
-                         out[0] = fresnel_cos_transmitted(in[0], in[1])),
-        CHECKED_FUNCTION("fresnel_conductor", "kernels/scatter/fresnel.h",
-                         (Arguments{cosine(), index, kappa}), 1, reflectance,
-                         out[0] = fresnel_conductor(in[0], in[1], in[2])),
+            CHECKED_FUNCTION("fresnel_cos_transmitted", "kernels/scatter/fresnel.h",
+                             (Arguments{cosine(), ior()}), 1,
+                             (Accuracy{1e-5, 1e-3, "falls as a root at the critical angle"}),
+                             out[0] = fresnel_cos_transmitted(in[0], in[1])),
+            CHECKED_FUNCTION("fresnel_refracted", "kernels/scatter/fresnel.h",
+                             (Arguments{direction(), ior()}), 3,
+                             (Accuracy{1e-5, 1e-3, "z falls as a root at the critical angle"}),
+                             const Vec3 w = fresnel_refracted(CHECK_VECTOR(0), in[3]);
+                             CHECK_RESULT(0, w)),
+            CHECKED_FUNCTION("fresnel_conductor", "kernels/scatter/fresnel.h",
+                             (Arguments{cosine(), index, kappa}), 1, reflectance,
+                             out[0] = fresnel_conductor(in[0], in[1], in[2])),
     };
 }
 
@@ -59,6 +65,25 @@ std::vector<CheckedFunction> oren_nayar_functions() {
                          out[0] = oren_nayar_albedo(in[0], in[1])),
         CHECKED_FUNCTION("oren_nayar_mean_albedo", "kernels/scatter/oren_nayar.h",
                          (Arguments{sigma}), 1, few_ulp, out[0] = oren_nayar_mean_albedo(in[0])),
+    };
+}
+
+std::vector<CheckedFunction> medium_functions() {
+    const Argument deflection{
+        Argument::Kind::Uniform, -1.0, 1.0, {-1.0f, 0.0f, 0.5f, 0.9999f, 0.9999999f, 1.0f}};
+    const Argument anisotropy{
+        Argument::Kind::Uniform, -0.999, 0.9999, {-0.99f, 0.0f, 0.5f, 0.99f, 0.999f, 0.9999f}};
+    return {
+        CHECKED_FUNCTION("henyey_greenstein_phase", "kernels/scatter/henyey_greenstein.h",
+                         (Arguments{anisotropy, deflection}), 1,
+                         (Accuracy{1e-5, 1e-6, "1 - g and 1 - cos are formed once, exactly"}),
+                         out[0] = henyey_greenstein_phase(in[0], in[1])),
+            CHECKED_FUNCTION("henyey_greenstein_sample", "kernels/scatter/henyey_greenstein.h",
+                             (Arguments{any_direction(), anisotropy, unit(), unit()}), 3,
+                             (Accuracy{1e-4, 1.0, "components of a unit vector, the sine a root"}),
+                             const Vec3 w =
+                                 henyey_greenstein_sample(CHECK_VECTOR(0), in[3], in[4], in[5]);
+                             CHECK_RESULT(0, w)),
     };
 }
 
@@ -142,6 +167,7 @@ std::vector<CheckedFunction> interface_functions() {
     std::vector<CheckedFunction> all = fresnel_functions();
     append(all, film_functions());
     append(all, oren_nayar_functions());
+    append(all, medium_functions());
     append(all, microfacet_functions());
     return all;
 }

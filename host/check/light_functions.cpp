@@ -31,6 +31,9 @@ std::vector<CheckedFunction> lamp_functions() {
     return {
         LIGHT_SAMPLE(0, "rectangle"), LIGHT_SAMPLE(1, "sphere"), LIGHT_SAMPLE(2, "point"),
             LIGHT_SAMPLE(3, "directional"),
+            CHECKED_FUNCTION("lights_choose", "kernels/scene/lights.h", (Arguments{unit()}), 1,
+                             (Accuracy{0.0, 1.0, "a whole number", 0.0}),
+                             out[0] = (real)lights_choose(tables->lights, CHECK_LIGHTS, in[0])),
             CHECKED_FUNCTION("lights_rectangle_pdf", "kernels/scene/lights.h",
                              (Arguments{length, length, cosine()}), 1, few_ulp,
                              out[0] = lights_rectangle_pdf(in[0], in[1], in[2])),

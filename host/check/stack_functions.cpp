@@ -13,22 +13,22 @@ const Accuracy lobe{5e-5, 1e-4, "half vectors of refracted directions times the 
 std::vector<CheckedFunction> model_a_functions() {
     const Arguments directions{direction(), direction()};
     return {
-        CHECKED_FUNCTION("layer_stack_descend", "kernels/stack/layer_stack.h", directions, 4, share,
+        CHECKED_FUNCTION("model_a_descend", "kernels/stack/model_a.h", directions, 4, share,
                          const LayerDescent d =
-                             layer_stack_descend(tables->layers, CHECK_LAYERS - 1u, 0,
-                                                 CHECK_VECTOR(0), CHECK_VECTOR(3));
+                             model_a_descend(tables->layers, CHECK_LAYERS - 1u, 0, CHECK_VECTOR(0),
+                                             CHECK_VECTOR(3));
                          out[0] = d.way_in; out[1] = d.way_out; out[2] = d.wi.z; out[3] = d.wo.z),
             CHECKED_FUNCTION(
-                "layer_stack_nested_lobe metal", "kernels/stack/layer_stack.h", directions, 2, lobe,
-                const LayerFacet facet = layer_stack_facet(tables->layers, CHECK_LAYERS - 1u, 0,
-                                                           CHECK_VECTOR(0), CHECK_VECTOR(3));
+                "model_a_nested_lobe metal", "kernels/stack/model_a.h", directions, 2, lobe,
+                const LayerFacet facet = model_a_facet(tables->layers, CHECK_LAYERS - 1u, 0,
+                                                       CHECK_VECTOR(0), CHECK_VECTOR(3));
                 out[0] = facet.cos_h;
-                out[1] = layer_stack_nested_lobe(tables->layers, tables->lobes[0], 0, facet)),
+                out[1] = model_a_nested_lobe(tables->layers, tables->lobes[0], 0, facet)),
             CHECKED_FUNCTION(
-                "layer_stack_nested_lobe slab", "kernels/stack/layer_stack.h", directions, 1, lobe,
+                "model_a_nested_lobe slab", "kernels/stack/model_a.h", directions, 1, lobe,
                 const LayerFacet facet =
-                    layer_stack_facet(tables->layers, 1u, 0, CHECK_VECTOR(0), CHECK_VECTOR(3));
-                out[0] = layer_stack_nested_lobe(tables->layers, tables->lobes[1], 0, facet)),
+                    model_a_facet(tables->layers, 1u, 0, CHECK_VECTOR(0), CHECK_VECTOR(3));
+                out[0] = model_a_nested_lobe(tables->layers, tables->lobes[1], 0, facet)),
             CHECKED_FUNCTION("layer_stack_diffuse", "kernels/stack/layer_stack.h", directions, 2,
                              (Accuracy{5e-6, 1.0, "one is a difference of shares"}),
                              const LayerStackView stack = CHECK_STACK;
@@ -39,10 +39,6 @@ std::vector<CheckedFunction> model_a_functions() {
 }
 
 std::vector<CheckedFunction> component_functions() {
-    const Argument deflection{
-        Argument::Kind::Uniform, -1.0, 1.0, {-1.0f, 0.0f, 0.5f, 0.9999f, 0.9999999f, 1.0f}};
-    const Argument anisotropy{
-        Argument::Kind::Uniform, -0.999, 0.9999, {-0.99f, 0.0f, 0.5f, 0.99f, 0.999f, 0.9999f}};
     return {
         CHECKED_FUNCTION("layer_stack_choice", "kernels/stack/layer_stack.h", (Arguments{cosine()}),
                          6, share, const LayerStackView stack = CHECK_STACK;
@@ -68,10 +64,6 @@ std::vector<CheckedFunction> component_functions() {
                              (Arguments{direction(), direction()}), 1, lobe,
                              const LayerStackView stack = CHECK_STACK;
                              out[0] = layer_stack_top(stack, CHECK_VECTOR(0), CHECK_VECTOR(3))),
-            CHECKED_FUNCTION("layer_stack_phase", "kernels/stack/layer_stack.h",
-                             (Arguments{anisotropy, deflection}), 1,
-                             (Accuracy{1e-5, 1e-6, "1 - g and 1 - cos are formed once, exactly"}),
-                             out[0] = layer_stack_phase(in[0], in[1])),
     };
 }
 

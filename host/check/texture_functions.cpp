@@ -58,6 +58,10 @@ std::vector<CheckedFunction> sampling_functions() {
                              const TableStencil s = table_stencil(in[0]);
                              out[0] = s.w0 + s.w1 + s.w2 + s.w3;
                              out[1] = (real)s.node + s.w1 + REAL(2.0) * s.w2 + REAL(3.0) * s.w3),
+            CHECKED_FUNCTION("table_search", "kernels/core/table.h",
+                             (Arguments{integer(64), unit()}), 1, exact,
+                             out[0] = (real)table_search(tables->shift + (uint)in[0] * LANES,
+                                                         LANES - 1u, 1u, in[1])),
     };
 }
 

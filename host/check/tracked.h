@@ -15,6 +15,7 @@
 #error "host/check/tracked.h has to come before the headers of kernels/"
 #endif
 #define KERNELS_NAMESPACE tracked
+#define KERNELS_FOR_DEVICE // with the bounds of single precision
 
 namespace reradiant::tracked {
 

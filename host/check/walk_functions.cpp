@@ -39,28 +39,46 @@ std::vector<CheckedFunction> facet_functions() {
                              (Accuracy{1e-4, 1.0, "the root at the critical angle"}),
                              const Vec3 w = walk_refracted(CHECK_VECTOR(1), CHECK_VECTOR(4), in[0]);
                              CHECK_RESULT(0, w)),
+            CHECKED_FUNCTION("walk_reflection_density", "kernels/walk/walk_facets.h",
+                             (Arguments{SMITH, direction(), direction(), unit()}), 1, density,
+                             const WalkSurface surface = CHECK_SURFACE;
+                             const Vec3 h = walk_half_reflected(CHECK_VECTOR(3), CHECK_VECTOR(6));
+                             out[0] = walk_reflection_density(surface, CHECK_VECTOR(3), h, in[9])),
+            CHECKED_FUNCTION("walk_refraction_density", "kernels/walk/walk_facets.h",
+                             (Arguments{SMITH, direction(), direction(), unit()}), 1, density,
+                             const WalkSurface surface = CHECK_SURFACE;
+                             const WalkRefraction r = walk_refraction(
+                                 surface, CHECK_VECTOR(3), walk_mirrored(CHECK_VECTOR(6)));
+                             out[0] = walk_refraction_density(surface, CHECK_VECTOR(3), r, in[9])),
             CHECKED_FUNCTION(
-                "walk_reflection_density", "kernels/walk/walk_facets.h",
-                (Arguments{SMITH, direction(), direction()}), 1, density,
-                const WalkSurface surface = CHECK_SURFACE;
-                out[0] = walk_reflection_density(surface, CHECK_VECTOR(3), CHECK_VECTOR(6))),
+                "walk_drawn_share", "kernels/walk/walk_facets.h",
+                (Arguments{integer(3), walk_alpha(), ior(), direction(), unit(), unit()}), 1,
+                (Accuracy{1e-3, 1e-2, "a facet's rounding over cosines at grazing views", 5e-3}),
+                const WalkSurface surface = {(int)in[0], in[1], in[2], 1, 0, 0};
+                const Vec3 v = CHECK_VECTOR(3);
+                const Vec3 h = microfacet_sample(surface.distribution, in[1], v, in[6], in[7]);
+                const Vec3 w = walk_reflected(v, h);
+                out[0] = w.z > REAL(0.0) && vec3_dot(v, h) > REAL(0.0)
+                             ? walk_drawn_share(surface, v, h, w, vec3_dot(v, h))
+                             : REAL(0.0)),
             CHECKED_FUNCTION(
-                "walk_refraction_density", "kernels/walk/walk_facets.h",
-                (Arguments{SMITH, direction(), direction()}), 1, density,
-                const WalkSurface surface = CHECK_SURFACE;
-                out[0] = walk_refraction_density(surface, CHECK_VECTOR(3), CHECK_VECTOR(6))),
-            CHECKED_FUNCTION(
-                "walk_escape", "kernels/walk/walk_facets.h",
+                "walk_escape", "kernels/walk/walk_microsurface.h",
                 (Arguments{SMITH, direction(), height()}), 1,
                 (Accuracy{1e-5, 1e-2, "an exponent that is large where little escapes"}),
                 const WalkSurface surface = CHECK_SURFACE;
                 out[0] = walk_escape(surface, CHECK_VECTOR(3), in[6])),
             CHECKED_FUNCTION(
-                "walk_next_height", "kernels/walk/walk_facets.h",
+                "walk_next_height", "kernels/walk/walk_microsurface.h",
                 (Arguments{SMITH, any_direction(), height(), unit()}), 1,
                 (Accuracy{1e-4, 1e-2, "a quotient by Lambda, beckmann's a difference"}),
                 const WalkSurface surface = CHECK_SURFACE;
                 out[0] = walk_next_height(surface, CHECK_VECTOR(3), in[6], in[7])),
+            CHECKED_FUNCTION(
+                "walk_met_height", "kernels/walk/walk_microsurface.h",
+                (Arguments{SMITH, any_direction(), height(), unit()}), 1,
+                (Accuracy{1e-4, 1e-2, "a quotient by Lambda, beckmann's a difference"}),
+                const WalkSurface surface = CHECK_SURFACE;
+                out[0] = walk_met_height(surface, CHECK_VECTOR(3), in[6], in[7])),
     };
 }
 

@@ -1,9 +1,10 @@
+#include "reradiant/spectral_image.h"
+
 #include "host/base/logging.h"
 #include "host/film/colour_image.h"
 #include "host/film/display_picture.h"
 #include "host/film/png.h"
 #include "reradiant/error.h"
-#include "reradiant/spectral_image.h"
 
 #include <OpenColorIO/OpenColorIO.h>
 

@@ -1,10 +1,10 @@
-#include "host/device/opencl_device.h"
+#include "reradiant/spectral_image.h"
+
 #include "host/exr/exr_input.h"
 #include "host/exr/exr_window.h"
 #include "host/film/exr_layout.h"
 #include "host/film/spectral_channels.h"
 #include "reradiant/error.h"
-#include "reradiant/spectral_image.h"
 
 #include <ImfChannelList.h>
 #include <ImfDoubleAttribute.h>

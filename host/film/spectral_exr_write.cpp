@@ -1,9 +1,10 @@
+#include "reradiant/spectral_image.h"
+
 #include "host/base/atomic_file.h"
 #include "host/film/checked_stream.h"
 #include "host/film/exr_layout.h"
 #include "host/film/spectral_channels.h"
 #include "reradiant/error.h"
-#include "reradiant/spectral_image.h"
 
 #include <ImfChannelList.h>
 #include <ImfDoubleAttribute.h>

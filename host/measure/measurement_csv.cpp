@@ -1,5 +1,6 @@
-#include "host/base/atomic_file.h"
 #include "reradiant/measure.h"
+
+#include "host/base/atomic_file.h"
 
 #include <fmt/format.h>
 

@@ -2,6 +2,7 @@
 
 #include "reradiant/layer_stack.h"
 
+#include <cstddef>
 #include <span>
 #include <variant>
 #include <vector>
@@ -87,6 +88,8 @@ StackElements stack_over(StackElements stack, StackElement substrate);
 /// Returns the surface of an interface, of flakes or of a conductor; null for a slab and for a
 /// diffuse substrate.
 const SurfaceValues* surface_of(const StackElement& element);
+/// Returns the indices of the elements that have a surface, from the air down.
+std::vector<std::size_t> reflecting_elements(std::span<const StackElement> stack);
 /// Returns the share of the light that meets the element: the coverage of flakes, else 1.
 double coverage_of(const StackElement& element);
 /// True for what spreads light beneath the air: a surface or a slab that scatters at this

@@ -1,7 +1,10 @@
 #pragma once
 
-#include "reradiant/layer_stack.h"
+#include "reradiant/stack_elements.h"
 
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace reradiant {
@@ -13,7 +16,7 @@ struct LobeShape {
 };
 
 /// A `StackModel` is what a closed model says of a stack at one wavelength, in double precision, by
-/// the cosine of a direction in air. `adding` (model B, reradiant/adding.h) counts every
+/// the cosine of a direction in air. `adding` (model B) counts every
 /// interreflection, `weidlich-wilkie` (model A, host/layers/models/weidlich_wilkie.h) none. What
 /// either says of two directions is a StackBsdf (host/layers/models/stack_bsdf.h).
 ///
@@ -68,5 +71,16 @@ public:
     /// share that is neither reflected, transmitted nor absorbed. Weidlich-wilkie does not know it.
     virtual double lost(double cos_theta) const = 0;
 };
+
+/// Returns why adding cannot do a stack, or nothing if it can: it knows no flakes, and an operator
+/// of a rough interface for each wavelength of a film costs too much (about a second each).
+std::optional<std::string> adding_refusal(const LayerStack& stack);
+
+/// Returns model B (`adding`) of the stack above a diffuse substrate, whether or not the list holds
+/// that. It is cheap for smooth clear stacks (closed form); for rough ones the interfaces'
+/// scattering operators are computed once per (IOR ratio, distribution, alpha, scattering) and kept
+/// in memory and in the disk cache; slabs that scatter take some 10 ms each. Thread-safe. Throws an
+/// input Error for numbers out of range and for what adding cannot do.
+std::shared_ptr<const StackModel> adding_transport(const StackElements& stack);
 
 } // namespace reradiant

@@ -47,12 +47,17 @@ using std::exp;
 using std::expm1;
 using std::fabs;
 using std::floor;
-using std::fmax;
-using std::fmin;
 using std::log;
 using std::log1p;
 using std::sin;
 using std::sqrt;
+/// The library's are calls, which cost more than what they do.
+inline double fmax(double a, double b) {
+    return a < b || a != a ? b : a;
+}
+inline double fmin(double a, double b) {
+    return b < a || a != a ? b : a;
+}
 } // namespace reradiant::kernels
 #endif
 

@@ -7,6 +7,7 @@
 typedef float shared_float;
 typedef uint shared_uint;
 typedef int shared_int;
+typedef uchar shared_byte;
 #define ASSERT_SIZE(type, bytes) typedef char type##_size_check[(sizeof(type) == (bytes)) ? 1 : -1]
 #else
 #include <cstdint>
@@ -14,6 +15,7 @@ namespace reradiant {
 using shared_float = float;
 using shared_uint = std::uint32_t;
 using shared_int = std::int32_t;
+using shared_byte = std::uint8_t;
 #define ASSERT_SIZE(type, bytes) static_assert(sizeof(type) == (bytes))
 #endif
 
@@ -250,6 +252,39 @@ ASSERT_SIZE(PixelSamples, 8);
 
 /// Numbers that the film keeps of a pixel besides its bands (film.cl).
 #define FILM_STATISTICS 6
+
+/// What stays as it is through a whole render.
+typedef struct {
+    CameraRecord camera;
+    EnvironmentRecord image;          ///< the environment where it is an image
+    shared_uint environment;          ///< light of the constant environments, or NO_INDEX
+    shared_uint sampled_lights;       ///< lights that light sampling can choose, the first ones
+    shared_uint max_depth, min_depth; ///< vertices of a path; those before Russian roulette
+    shared_uint phases;               ///< of the comb
+    shared_uint first_seen_lane, seen_lanes; ///< lanes that add to the film, for `hero`
+    shared_uint sequence_blocks; ///< a path's first blocks, from the sequence (sequence.h)
+    shared_uint seed;
+    shared_uint capacity; ///< paths of a batch at most: what vertices keep lies [depth][capacity]
+} RenderRecord;
+ASSERT_SIZE(RenderRecord, 136);
+
+/// A batch of paths: pixels that follow each other, so many samples of each. `chosen` 1: the pixels
+/// are those of a list, from first_pixel on in it, and first_sample is added to what it says.
+typedef struct {
+    shared_uint chosen;
+    shared_uint first_pixel, pixels;
+    shared_uint first_sample, samples;
+    shared_uint strip_pixel; ///< first pixel of the strip of the film that holds them
+} BatchRecord;
+ASSERT_SIZE(BatchRecord, 24);
+
+/// One depth of a batch, 0 for what the camera sees.
+typedef struct {
+    shared_uint depth;
+    shared_uint live_paths;  ///< that reach it
+    shared_uint walk_chunks; ///< room for the events of walks
+} DepthRecord;
+ASSERT_SIZE(DepthRecord, 12);
 
 /// State of a path between stages.
 typedef struct {

@@ -1,5 +1,6 @@
 // Tables over the cosine of an angle, in u = sqrt(cos): transmissions behave as cos near grazing,
-// a parabola in u, which cubic interpolation reproduces exactly.
+// a parabola in u, which cubic interpolation reproduces exactly. And the search in ascending
+// tables.
 #ifndef RERADIANT_TABLE_H
 #define RERADIANT_TABLE_H
 
@@ -28,6 +29,26 @@ DEVICE_FUNCTION TableStencil table_stencil(real cosine) {
     s.w2 = t * (t - REAL(1.0)) * (t - REAL(3.0)) * REAL(-0.5);
     s.w3 = t * (t - REAL(1.0)) * (t - REAL(2.0)) * REAL(0.16666666666666667);
     return s;
+}
+
+/// How many of `count` ascending numbers, `stride` floats apart, are not above x: the index of the
+/// first that is. With a table of cumulative probabilities, less its last, and x uniform in [0, 1),
+/// that is the choice.
+#ifdef __OPENCL_VERSION__
+typedef __global const shared_float* TableNumbers;
+#else
+template <typename TableNumbers> // floats as the device has them, or the doubles of the host's walk
+#endif
+DEVICE_FUNCTION uint table_search(TableNumbers numbers, uint count, uint stride, real x) {
+    uint low = 0u, high = count;
+    while (low < high) {
+        const uint middle = (low + high) / 2u;
+        if ((real)numbers[middle * stride] <= x)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return low;
 }
 
 KERNELS_END

@@ -42,6 +42,12 @@ DEVICE_FUNCTION real fresnel_cos_transmitted(real cos_i, real eta) {
     return c < REAL(1.0) ? c : REAL(1.0);
 }
 
+/// Direction w (w.z >= 0) of one side of a smooth interface refracted to the other, as seen from
+/// there on the same side of the normal; z = 0 at and beyond the critical angle.
+DEVICE_FUNCTION Vec3 fresnel_refracted(Vec3 w, real eta) {
+    return vec3(w.x / eta, w.y / eta, fresnel_cos_transmitted(w.z, eta));
+}
+
 /// Reflectance (unit 1) of an opaque conductor for unpolarised light: IOR eta + i k relative to the
 /// medium of incidence, cos_i >= 0. k == 0 is a dielectric of IOR ratio eta. Born and Wolf, 14.2,
 /// with q = a + i b, q^2 = (eta + i k)^2 - sin^2: |r_s|^2 = ((a - c)^2 + b^2) / ((a + c)^2 + b^2)

@@ -6,12 +6,7 @@
 
 #include "kernels/core/portable.h"
 #include "kernels/core/shared.h"
-
-#ifdef __OPENCL_VERSION__
-#define ENVIRONMENT_DATA __global const shared_float*
-#else
-#define ENVIRONMENT_DATA const shared_float*
-#endif
+#include "kernels/core/table.h"
 
 KERNELS_BEGIN
 
@@ -30,22 +25,9 @@ DEVICE_FUNCTION EnvironmentPlace environment_place(EnvironmentRecord environment
     return place;
 }
 
-/// Index of the last entry of an ascending table of `count` entries that is not above u.
-DEVICE_FUNCTION uint environment_search(ENVIRONMENT_DATA cumulative, uint count, real u) {
-    uint low = 0u, high = count;
-    while (high - low > 1u) {
-        const uint middle = (low + high) / 2u;
-        if (cumulative[middle] <= u)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 /// Pdf per solid angle of `environment_sample`.
-DEVICE_FUNCTION real environment_pdf(EnvironmentRecord environment, ENVIRONMENT_DATA tables,
-                                     EnvironmentPlace place) {
+DEVICE_FUNCTION real environment_pdf(EnvironmentRecord environment,
+                                     GLOBAL_CONST shared_float* tables, EnvironmentPlace place) {
     uint column = (uint)(place.u * (real)environment.width);
     uint row = (uint)(place.v * (real)environment.height);
     column = column < environment.width ? column : environment.width - 1u;
@@ -55,12 +37,13 @@ DEVICE_FUNCTION real environment_pdf(EnvironmentRecord environment, ENVIRONMENT_
 }
 
 /// Direction from two uniform numbers; cumulative tables start with 0 and lack the final 1.
-DEVICE_FUNCTION Vec3 environment_sample(EnvironmentRecord environment, ENVIRONMENT_DATA tables,
-                                        real u1, real u2) {
-    ENVIRONMENT_DATA marginal = tables + environment.marginal;
-    const uint row = environment_search(marginal, environment.height, u1);
-    ENVIRONMENT_DATA conditional = tables + environment.conditional + row * environment.width;
-    const uint column = environment_search(conditional, environment.width, u2);
+DEVICE_FUNCTION Vec3 environment_sample(EnvironmentRecord environment,
+                                        GLOBAL_CONST shared_float* tables, real u1, real u2) {
+    GLOBAL_CONST shared_float* marginal = tables + environment.marginal;
+    const uint row = table_search(marginal + 1, environment.height - 1u, 1u, u1);
+    GLOBAL_CONST shared_float* conditional =
+        tables + environment.conditional + row * environment.width;
+    const uint column = table_search(conditional + 1, environment.width - 1u, 1u, u2);
     const real row_end = row + 1u < environment.height ? marginal[row + 1u] : REAL(1.0);
     const real column_end = column + 1u < environment.width ? conditional[column + 1u] : REAL(1.0);
     const real along_row = (u1 - marginal[row]) / fmax(row_end - marginal[row], REAL(1e-20));
@@ -77,8 +60,9 @@ DEVICE_FUNCTION Vec3 environment_sample(EnvironmentRecord environment, ENVIRONME
 }
 
 /// Bilinear colour of the image, c = 0, 1, 2; columns repeat, rows stop at the poles.
-DEVICE_FUNCTION real environment_colour(EnvironmentRecord environment, ENVIRONMENT_DATA tables,
-                                        EnvironmentPlace place, uint c) {
+DEVICE_FUNCTION real environment_colour(EnvironmentRecord environment,
+                                        GLOBAL_CONST shared_float* tables, EnvironmentPlace place,
+                                        uint c) {
     const real x = place.u * (real)environment.width - REAL(0.5);
     const real y = place.v * (real)environment.height - REAL(0.5);
     const real fx = floor(x), fy = floor(y);

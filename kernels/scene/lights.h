@@ -7,8 +7,16 @@
 #include "kernels/core/portable.h"
 #include "kernels/core/sampling.h"
 #include "kernels/core/shared.h"
+#include "kernels/core/table.h"
 
 KERNELS_BEGIN
+
+/// The light that a uniform number chooses of the first `count`, at least one, by their selection
+/// probabilities; the last one where rounding leaves none.
+DEVICE_FUNCTION uint lights_choose(GLOBAL_CONST LightRecord* lights, uint count, real u) {
+    return table_search(&lights->cumulative, count - 1u, sizeof(LightRecord) / sizeof(shared_float),
+                        u);
+}
 
 /// Direction from a point towards a light. weight = light factor / pdf (selection not included),
 /// 0 when the light cannot be seen; pdf per solid angle, 0 for point and directional lights.

@@ -8,12 +8,6 @@
 #include "kernels/core/random.h"
 #include "kernels/core/shared.h"
 
-#ifdef __OPENCL_VERSION__
-#define TEXTURE_DATA __global const shared_float*
-#else
-#define TEXTURE_DATA const shared_float*
-#endif
-
 KERNELS_BEGIN
 
 /// A `TexturePoint` is what a texture says about a point. slope_x and slope_y are the tangents of
@@ -145,7 +139,8 @@ DEVICE_FUNCTION uint texture_wrap(int i, uint size) {
 }
 
 /// Bilinear, repeating; row 0 is at v = 1.
-DEVICE_FUNCTION TexturePoint texture_image(TextureRecord texture, Vec3 p, TEXTURE_DATA data) {
+DEVICE_FUNCTION TexturePoint texture_image(TextureRecord texture, Vec3 p,
+                                           GLOBAL_CONST shared_float* data) {
     const real x = p.x * (real)texture.width - REAL(0.5);
     const real y = -p.y * (real)texture.height - REAL(0.5);
     const real fx = floor(x), fy = floor(y);
@@ -156,7 +151,8 @@ DEVICE_FUNCTION TexturePoint texture_image(TextureRecord texture, Vec3 p, TEXTUR
                 (i ? x - fx : REAL(1.0) - (x - fx)) * (j ? y - fy : REAL(1.0) - (y - fy));
             const uint column = texture_wrap((int)fx + i, texture.width);
             const uint row = texture_wrap((int)fy + j, texture.height);
-            TEXTURE_DATA texel = data + texture.image + 3u * (row * texture.width + column);
+            GLOBAL_CONST shared_float* texel =
+                data + texture.image + 3u * (row * texture.width + column);
             for (int c = 0; c < 3; ++c)
                 rgb[c] += weight * texel[c];
         }
@@ -178,7 +174,7 @@ DEVICE_FUNCTION TexturePoint texture_image(TextureRecord texture, Vec3 p, TEXTUR
 
 /// `data`: the tables that the record's image offset counts from.
 DEVICE_FUNCTION TexturePoint texture_at(TextureRecord texture, Vec3 position, real u, real v,
-                                        TEXTURE_DATA data) {
+                                        GLOBAL_CONST shared_float* data) {
     const Vec3 place = texture.space == TEXTURE_WORLD ? position : vec3(u, v, REAL(0.0));
     const Vec3 p = vec3_scale(place, texture.inverse_size);
     if (texture.type == TEXTURE_NOISE)

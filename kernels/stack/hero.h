@@ -19,6 +19,7 @@
 #define RERADIANT_HERO_H
 
 #include "kernels/core/features.h"
+#include "kernels/core/table.h"
 
 #if HERO > 8
 typedef float16 Lanes;
@@ -77,15 +78,7 @@ HeroLanes hero_rotated(float u, uint first, uint count) {
 
 /// First lane whose cumulative probability lies above u.
 uint hero_search(__global const float* cumulative, float u) {
-    uint low = 0u, high = LANES - 1u;
-    while (low < high) {
-        const uint middle = (low + high) / 2u;
-        if (cumulative[middle] > u)
-            high = middle;
-        else
-            low = middle + 1u;
-    }
-    return low;
+    return table_search(cumulative, LANES - 1u, 1u, u);
 }
 
 float hero_probability(__global const float* cumulative, uint lane) {

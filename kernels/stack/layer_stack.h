@@ -14,6 +14,7 @@
 #include "kernels/scatter/fresnel.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
+#include "kernels/stack/model_a.h"
 
 KERNELS_BEGIN
 
@@ -117,129 +118,6 @@ DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice*
     return sampling_cosine(u1, u2);
 }
 
-#if FEATURE_WEIDLICH_WILKIE
-/// Two directions on their way down a stack under model A, and what its interfaces let through:
-/// way_in = product of T12, way_out = product of t (absorption not included).
-typedef struct {
-    Vec3 wi, wo;
-    real way_in, way_out;
-} LayerDescent;
-
-/// One part of model A between two directions just above it (Weidlich and Wilkie 2007,
-/// eq. 3-5); both are refracted into the medium below at the macroscopic normal. Nothing passes
-/// when one of them is totally reflected.
-DEVICE_FUNCTION void layer_stack_cross(LayerRecord layer, real eta, LayerDescent* d) {
-    real t12, t;
-    if (layer.coverage > 0.0f) { // a sheet of flakes
-        d->way_in *= REAL(1.0) - layer.coverage;
-        d->way_out *= REAL(1.0) - layer.coverage;
-        return;
-    }
-    if (layer.reflectance != NO_INDEX) {
-        t12 = t = REAL(1.0); // a film: in the tables, by each direction and wavelength
-    } else if (layer.alpha > 0.0f) {
-        const Vec3 h = vec3_normalise(vec3_add(d->wi, d->wo));
-        t12 = REAL(1.0) - fresnel_dielectric(fmax(vec3_dot(d->wi, h), REAL(0.0)), eta);
-        const real g = microfacet_g2((int)layer.distribution, layer.alpha, d->wi, d->wo, h);
-        t = (REAL(1.0) - g) + t12 * g;
-    } else {
-        t12 = REAL(1.0) - fresnel_dielectric(d->wi.z, eta);
-        t = REAL(1.0) - fresnel_dielectric(d->wo.z, eta);
-    }
-    const real cos_i = fresnel_cos_transmitted(d->wi.z, eta);
-    const real cos_o = fresnel_cos_transmitted(d->wo.z, eta);
-    const int passes = cos_i > REAL(0.0) && cos_o > REAL(0.0);
-    d->way_in = passes ? d->way_in * t12 : REAL(0.0);
-    d->way_out = passes ? d->way_out * t : REAL(0.0);
-    d->wi = vec3(d->wi.x / eta, d->wi.y / eta, cos_i);
-    d->wo = vec3(d->wo.x / eta, d->wo.y / eta, cos_o);
-}
-
-/// Takes two directions down the first `count` parts. The IOR ratios are those of the records, or,
-/// with `lane_etas` not null, lane_etas[layer.eta_lanes].
-DEVICE_FUNCTION LayerDescent layer_stack_descend(GLOBAL_CONST LayerRecord* layers, uint count,
-                                                 GLOBAL_CONST shared_float* lane_etas, Vec3 wi,
-                                                 Vec3 wo) {
-    LayerDescent descent;
-    descent.wi = wi;
-    descent.wo = wo;
-    descent.way_in = REAL(1.0);
-    descent.way_out = REAL(1.0);
-    for (uint k = 0u; k < count && descent.way_in > REAL(0.0); ++k)
-        layer_stack_cross(layers[k], lane_etas ? lane_etas[layers[k].eta_lanes] : layers[k].eta,
-                          &descent);
-    return descent;
-}
-
-/// Two directions at one part of a stack under model A, and the cosine at the facet that reflects
-/// one into the other.
-typedef struct {
-    Vec3 wi, wo;
-    real through, cos_h;
-} LayerFacet;
-
-DEVICE_FUNCTION LayerFacet layer_stack_facet(GLOBAL_CONST LayerRecord* layers, uint index,
-                                             GLOBAL_CONST shared_float* lane_etas, Vec3 wi,
-                                             Vec3 wo) {
-    const LayerDescent above = layer_stack_descend(layers, index, lane_etas, wi, wo);
-    const Vec3 h = vec3_normalise(vec3_add(above.wi, above.wo));
-    LayerFacet facet;
-    facet.wi = above.wi;
-    facet.wo = above.wo;
-    facet.through = above.way_in * above.way_out;
-    facet.cos_h = fmax(vec3_dot(above.wi, h), REAL(0.0));
-    return facet;
-}
-
-/// Value of a rough part's lobe under model A between the directions just above it, seen through
-/// the parts above (absorption not included, nor what is tabulated of its reflectance). 1/sr, no
-/// cosine.
-DEVICE_FUNCTION real layer_stack_part_lobe(LayerRecord layer, real eta, LayerFacet facet) {
-    real reflectance = REAL(1.0);
-    if (!(facet.through > REAL(0.0)))
-        return REAL(0.0);
-    if (layer.coverage > 0.0f)
-        reflectance = layer.coverage;
-    else if (layer.reflectance == NO_INDEX)
-        reflectance = fresnel_dielectric(facet.cos_h, eta);
-    return facet.through * reflectance *
-           microfacet_reflection((int)layer.distribution, layer.alpha, facet.wi, facet.wo);
-}
-#endif
-
-#if FEATURE_SCATTERING_SLABS
-/// Henyey and Greenstein 1941, 1/sr over the sphere; (1 - g)^2 + 2 g (1 - cos) keeps its digits
-/// where g is near 1.
-DEVICE_FUNCTION real layer_stack_phase(real g, real cos_deflection) {
-    const real d = g < REAL(0.0)
-                       ? square(REAL(1.0) + g) - REAL(2.0) * g * (REAL(1.0) + cos_deflection)
-                       : square(REAL(1.0) - g) + REAL(2.0) * g * (REAL(1.0) - cos_deflection);
-    return (REAL(1.0) - g) * (REAL(1.0) + g) * REAL(0.25) * INV_PI_REAL /
-           (d * sqrt(fmax(d, REAL(1e-30))));
-}
-#endif
-
-#if FEATURE_WEIDLICH_WILKIE
-/// Value of a deeper lobe under model A at what layer_stack_facet says of its part. A slab's is
-/// single scattering (Hanrahan and Krueger 1993, eq. 5): through p / (cos_i + cos_o), to be
-/// multiplied per lane by albedo (1 - exp(-tau (1 / cos_i + 1 / cos_o))). 1/sr, no cosine.
-DEVICE_FUNCTION real layer_stack_nested_lobe(GLOBAL_CONST LayerRecord* layers, LobeRecord lobe,
-                                             GLOBAL_CONST shared_float* lane_etas,
-                                             LayerFacet facet) {
-#if FEATURE_SCATTERING_SLABS
-    if (lobe.slab != NO_INDEX) {
-        if (!(facet.through > REAL(0.0)))
-            return REAL(0.0);
-        // light comes along -wi and leaves along wo
-        return facet.through * layer_stack_phase(lobe.alpha, -vec3_dot(facet.wi, facet.wo)) /
-               (facet.wi.z + facet.wo.z);
-    }
-#endif
-    const LayerRecord layer = layers[lobe.layer];
-    return layer_stack_part_lobe(layer, lane_etas ? lane_etas[layer.eta_lanes] : layer.eta, facet);
-}
-#endif
-
 /// Scalar value of a deeper lobe, to be multiplied by its two amplitudes (and by what model A
 /// evaluates per lane). 1/sr, no cosine.
 #if FEATURE_DEEPER_LOBES
@@ -248,9 +126,8 @@ DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi
     if (stack.record.weidlich_wilkie == MODEL_A_PER_LANE)
         return REAL(1.0);
     if (stack.record.weidlich_wilkie == MODEL_A)
-        return layer_stack_nested_lobe(
-            stack.layers, stack.lobes[lobe], 0,
-            layer_stack_facet(stack.layers, stack.lobes[lobe].layer, 0, wi, wo));
+        return model_a_nested_lobe(stack.layers, stack.lobes[lobe], 0,
+                                   model_a_facet(stack.layers, stack.lobes[lobe].layer, 0, wi, wo));
 #endif
     return microfacet_reflection((int)stack.lobes[lobe].distribution, stack.lobes[lobe].alpha, wi,
                                  wo);
@@ -280,9 +157,8 @@ typedef struct {
 /// substrate (by the IOR at the reference wavelength): where its first bounce stands apart, the
 /// weights `rest` and `first` of host/layers/models/oren_nayar_substrate.h; else pi f / rho.
 DEVICE_FUNCTION LayerDiffuse layer_stack_oren_nayar(MaterialRecord record, Vec3 wi, Vec3 wo) {
-    const real n = record.lowest_ior;
-    const Vec3 below_i = vec3(wi.x / n, wi.y / n, fresnel_cos_transmitted(wi.z, n));
-    const Vec3 below_o = vec3(wo.x / n, wo.y / n, fresnel_cos_transmitted(wo.z, n));
+    const Vec3 below_i = fresnel_refracted(wi, record.lowest_ior);
+    const Vec3 below_o = fresnel_refracted(wo, record.lowest_ior);
     LayerDiffuse weights;
     weights.first = REAL(0.0);
     weights.diffuse = PI_REAL * oren_nayar_value(record.sigma, below_i, below_o);
@@ -310,7 +186,7 @@ DEVICE_FUNCTION LayerDiffuse layer_stack_diffuse(LayerStackView stack, Vec3 wi, 
 #if FEATURE_WEIDLICH_WILKIE
     if (stack.record.weidlich_wilkie == MODEL_A) {
         const LayerDescent descent =
-            layer_stack_descend(stack.layers, stack.record.layer_count, 0, wi, wo);
+            model_a_descend(stack.layers, stack.record.layer_count, 0, wi, wo);
         factor.diffuse *= descent.way_in * descent.way_out;
     }
 #endif

@@ -16,30 +16,32 @@ typedef struct {
 } HeroSets;
 
 /// Samples the wavelengths of a whole path, from the camera on.
-void choose_lanes(HeroSets sets, PathState state, __global const VertexRecord* vertices,
-                  __global const MaterialRecord* materials, __global const float* tables,
-                  HeroLanes lanes, uint seed) {
+void choose_lanes(HeroSets sets, PathState state, const GatherScene* scene, RenderRecord render) {
+    HeroLanes lanes =
+        hero_rotated(random_4(state.pixel, state.sample, HERO_DIMENSION, render.seed).a,
+                     render.first_seen_lane, render.seen_lanes);
     HERO_STORE(lanes, sets.path, sets.lanes);
     for (uint depth = 0u; depth < state.vertex_count; ++depth) {
         const size_t slot = (size_t)depth * sets.capacity + sets.path;
-        const uint material = vertices[slot].material;
+        const uint material = scene->vertices[slot].material;
         Lanes weights = (Lanes)(1.0f);
-        if (material != NO_INDEX && materials[material].shift != NO_INDEX)
+        if (material != NO_INDEX && scene->materials[material].shift != NO_INDEX)
             lanes = hero_shift(
-                tables + materials[material].shift + (size_t)state.phase * (LANES * LANES), lanes,
-                random_4(state.pixel, state.sample, HERO_DIMENSION + 1u + depth, seed).a, &weights);
+                scene->tables + scene->materials[material].shift +
+                    (size_t)state.phase * (LANES * LANES),
+                lanes,
+                random_4(state.pixel, state.sample, HERO_DIMENSION + 1u + depth, render.seed).a,
+                &weights);
         HERO_STORE(lanes, slot + sets.capacity, sets.lanes);
         HERO_STORE(weights, slot + sets.capacity, sets.weights);
     }
 }
 
-/// The wavelengths at a vertex; an emitter is looked up at those that arrive from the camera.
-void set_lanes(GatherContext* context, HeroSets sets, uint depth, int is_emitter) {
-    const size_t slot = (size_t)depth * sets.capacity + sets.path;
+/// The wavelengths at a vertex. An emitter is looked up at those that arrive from the camera.
+void load_lanes(GatherContext* context, HeroSets sets, size_t slot) {
     context->leaving = HERO_LOAD(slot, sets.lanes);
     context->incoming = HERO_LOAD(slot + sets.capacity, sets.lanes);
     context->weights = HERO_LOAD(slot + sets.capacity, sets.weights);
-    context->lanes = is_emitter ? context->leaving : context->incoming;
 }
 
 /// Adds the set's radiance to its lanes, all others are 0.

@@ -21,6 +21,25 @@ typedef float16 Lanes;
 #define PATH_WIDTH WIDTH
 #endif
 
+/// A `GatherScene` holds the arrays that `gather` reads, and the path's phase.
+typedef struct {
+    __global const VertexRecord* vertices;
+    __global const RayRecord* shadow_rays;
+    __global const float* lobe_weights;
+    __global const float* colours;
+    __global const MaterialRecord* materials;
+    __global const LayerRecord* layers;
+    __global const LobeRecord* lobes;
+    __global const LightRecord* lights;
+    __global const float* tables;
+    __global const WalkPartRecord* walk_parts;
+    __global const WalkChunk* walk_chunks;
+    __global const WalkVertexRecord* walk_vertices;
+    uint image_light; ///< the environment that is an image, or NO_INDEX
+    uint phase, phases;
+} GatherScene;
+
+/// A `GatherContext` is what is looked up at one vertex.
 typedef struct {
     MaterialRecord material;
     __global const LayerRecord* layers;
@@ -106,12 +125,13 @@ Lanes facet_reflectance(const GatherContext* context, uint offset, float cos_h, 
 }
 #endif
 
-/// Radiance of a light along the way it was seen, for one vector; spectrum: at the path's phase.
-Lanes emission(const GatherContext* context, __global const float* spectrum, uint is_image,
-               uint chunk) {
+/// Radiance of a light along the way it was seen from a vertex, for one vector.
+Lanes emission(const GatherScene* scene, const GatherContext* context, uint light, uint chunk) {
+    __global const float* spectrum =
+        scene->tables + scene->lights[light].spectrum + scene->phase * LANES;
 #if FEATURE_ENVIRONMENT_IMAGE
-    if (is_image) {
-        const size_t size = (size_t)context->phases * LANES;
+    if (light == scene->image_light) {
+        const size_t size = (size_t)scene->phases * LANES;
         return context->colour[0] * path_row(context, spectrum, chunk) +
                context->colour[1] * path_row(context, spectrum + size, chunk) +
                context->colour[2] * path_row(context, spectrum + 2u * size, chunk);

@@ -6,9 +6,7 @@
 #include "kernels/stack/layer_stack.h"
 #include "kernels/stages/gather_lanes.h"
 
-#if FEATURE_DISPERSION && FEATURE_WEIDLICH_WILKIE
-#define FEATURE_MODEL_A_PER_LANE 1
-
+#if FEATURE_MODEL_A_PER_LANE
 /// IOR ratios of one lane: add a layer's eta_lanes.
 __global const float* lane_etas(const GatherContext* context, uint lane) {
     return context->tables + (size_t)context->phase * LANES + lane;
@@ -19,8 +17,8 @@ __global const float* lane_etas(const GatherContext* context, uint lane) {
 void model_a_ways(const GatherContext* context, Vec3 wi, Vec3 wo, Lanes* way_in, Lanes* way_out) {
     for (uint i = 0u; i < PATH_CHUNKS * PATH_WIDTH; ++i) {
         const LayerDescent descent =
-            layer_stack_descend(context->layers, context->material.layer_count,
-                                lane_etas(context, path_lane(context, i)), wi, wo);
+            model_a_descend(context->layers, context->material.layer_count,
+                            lane_etas(context, path_lane(context, i)), wi, wo);
         ((float*)way_in)[i] = descent.way_in;
         ((float*)way_out)[i] = descent.way_out;
     }
@@ -57,16 +55,14 @@ Lanes model_a_lobe(const GatherContext* context, LobeRecord lobe, Vec3 wi, Vec3 
     for (uint i = 0u; i < PATH_WIDTH; ++i) {
         const uint lane = path_lane(context, chunk * PATH_WIDTH + i);
         __global const float* etas = lane_etas(context, lane);
-        const LayerFacet facet = layer_stack_facet(context->layers, lobe.layer, etas, wi, wo);
-        const float value = layer_stack_nested_lobe(context->layers, lobe, etas, facet);
+        const LayerFacet facet = model_a_facet(context->layers, lobe.layer, etas, wi, wo);
+        const float value = model_a_nested_lobe(context->layers, lobe, etas, facet);
         ((float*)&result)[i] =
             value > 0.0f ? value * model_a_tabulated_lane(context, lobe, facet, lane) : 0.0f;
     }
     return result;
 }
 #endif
-#else
-#define FEATURE_MODEL_A_PER_LANE 0
 #endif
 
 #if FEATURE_ROUGH
@@ -92,15 +88,12 @@ Lanes top_reflectance(const GatherContext* context, Vec3 wi, Vec3 wo, uint chunk
 }
 #endif
 
-#if FEATURE_DEEPER_LOBES && FEATURE_WEIDLICH_WILKIE &&                                             \
-    (FEATURE_SCATTERING_SLABS || FEATURE_TABULATED_REFLECTANCE)
-#define FEATURE_MODEL_A_TABULATED 1
-
+#if FEATURE_MODEL_A_TABULATED
 /// Returns the factor that the tables add to a deeper lobe of model A for one vector of lanes, as
 /// model_a_tabulated_lane does for one lane.
 Lanes model_a_tabulated(const GatherContext* context, LobeRecord lobe, Vec3 wi, Vec3 wo,
                         uint chunk) {
-    const LayerFacet facet = layer_stack_facet(context->layers, lobe.layer, 0, wi, wo);
+    const LayerFacet facet = model_a_facet(context->layers, lobe.layer, 0, wi, wo);
 #if FEATURE_SCATTERING_SLABS
     if (lobe.slab != NO_INDEX) {
         __global const float* slab = context->tables + lobe.slab + context->phase * LANES;
@@ -116,8 +109,6 @@ Lanes model_a_tabulated(const GatherContext* context, LobeRecord lobe, Vec3 wi, 
 #endif
     return (Lanes)(1.0f);
 }
-#else
-#define FEATURE_MODEL_A_TABULATED 0
 #endif
 
 #if FEATURE_DEEPER_LOBES

@@ -73,17 +73,17 @@ void replay_walk(const GatherContext* context, WalkReader reader, uint reference
     }
 }
 
-/// Radiance that leaves a vertex which was walked through; `radiance` as in gather_vertex.
-void gather_walk(const GatherContext* context, const VertexRecord* vertex, WalkVertexRecord walk,
-                 __global const WalkChunk* chunks, int lit, __global const float* light_spectrum,
-                 uint light_is_image, Lanes* radiance) {
+/// Radiance that leaves a vertex which was walked through; `radiance` as in gather_layers.
+static void gather_walk(const GatherScene* scene, const GatherContext* context,
+                        const VertexRecord* vertex, size_t slot, int lit, Lanes* radiance) {
+    const WalkVertexRecord walk = scene->walk_vertices[slot];
     Lanes light[PATH_CHUNKS];
     const float weight = vertex->has_next ? walk.weight : 0.0f;
     for (uint c = 0u; c < PATH_CHUNKS; ++c) {
         radiance[c] = weight > 0.0f ? weight * radiance[c] : (Lanes)(0.0f);
-        light[c] = lit ? emission(context, light_spectrum, light_is_image, c) : (Lanes)(0.0f);
+        light[c] = lit ? emission(scene, context, vertex->light, c) : (Lanes)(0.0f);
     }
-    const WalkReader reader = {chunks, walk.chunk, walk.count};
+    const WalkReader reader = {scene->walk_chunks, walk.chunk, walk.count};
     replay_walk(context, reader, walk.reference, lit, light, radiance);
 }
 #endif

@@ -1,4 +1,5 @@
-// Defines what `shade` reads of the scene, and finds the point of a surface that a path has met.
+// Defines what `shade` reads of the scene and what a step of a path is, and finds the point of a
+// surface that the path has met.
 #ifndef RERADIANT_SHADE_SURFACE_H
 #define RERADIANT_SHADE_SURFACE_H
 
@@ -8,6 +9,7 @@
 #include "kernels/core/sampling.h"
 #include "kernels/core/shared.h"
 #include "kernels/scene/texture.h"
+#include "kernels/stages/rays.h"
 
 /// Random dimensions of textures, far from those of lights and directions.
 #define TEXTURE_DIMENSION 0x40000000u
@@ -21,42 +23,52 @@ typedef struct {
     __global const TextureRecord* textures;
     __global const LightRecord* lights;
     __global const float* tables;
-    EnvironmentRecord image; ///< the environment where it is an image
-    uint light_count;
-    uint environment; ///< light of a constant environment, or NO_INDEX
+    __global const WalkPartRecord* walk_parts;
+    __global WalkChunk* walk_chunks; ///< where walks keep their events: so many, and those in use
+    __global uint* walk_chunks_used;
+    uint walk_room;
+    RenderRecord render;
 } ShadeScene;
 
-/// Origin moved off the surface to the side of `direction`, beyond the position's error bound
-/// (after Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th ed., section 6.8.6).
-Vec3 offset_origin(HitRecord hit, Vec3 direction) {
-    const Vec3 n = vec3(hit.normal_x, hit.normal_y, hit.normal_z);
-    const real reach = 2.0f * hit.position_error * (fabs(n.x) + fabs(n.y) + fabs(n.z));
-    const real side = vec3_dot(n, direction) < 0.0f ? -reach : reach;
-    return vec3_add(vec3(hit.position_x, hit.position_y, hit.position_z), vec3_scale(n, side));
-}
+/// A `ShadeStep` is what one step of a path knows when it begins (`ray`, `hit`, `state`, `depth`),
+/// and what it leaves: a vertex, with what is kept beside it, a shadow ray and the ray along which
+/// the path goes on, both inactive where there are none.
+typedef struct {
+    HitRecord hit;
+    PathState state;
+    uint depth;
+    RayRecord ray, next, shadow;
+    VertexRecord vertex;
+    WalkVertexRecord walk;
+    __global float* colour;       ///< VERTEX_COLOURS of the vertex
+    __global float* lobe_weights; ///< [2][LOBES] of the vertex: along `next`, towards the light
+} ShadeStep;
 
-RayRecord ray_record(Vec3 origin, Vec3 direction, real t_far) {
-    RayRecord ray;
-    ray.origin_x = origin.x;
-    ray.origin_y = origin.y;
-    ray.origin_z = origin.z;
-    ray.t_near = 0.0f;
-    ray.direction_x = direction.x;
-    ray.direction_y = direction.y;
-    ray.direction_z = direction.z;
-    ray.t_far = t_far;
-    return ray;
+/// A step before anything was found: no light, no way to go on.
+ShadeStep shade_step(RayRecord ray, HitRecord hit, PathState state, uint depth) {
+    const DirectionRecord nothing = {0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+    const VertexRecord empty = {NO_INDEX, NO_INDEX, 0.0f, NO_INDEX, 0.0f,
+                                0.0f,     1.0f,     0u,   nothing,  nothing};
+    const WalkVertexRecord none = {NO_INDEX, 0u, 0u, 0.0f};
+    const ShadeStep step = {hit,   state, depth, ray, ray_inactive(), ray_inactive(),
+                            empty, none,  0,     0};
+    return step;
 }
 
 /// A `SurfacePoint` is the point at which a path meets a material, with a local frame on the side
 /// that the ray came from.
 typedef struct {
-    HitRecord hit;
     Frame frame;
     Vec3 geometric; ///< normal on the side of the camera
     Vec3 wo;        ///< towards the camera, local
     uint material;
 } SurfacePoint;
+
+#if FEATURE_TEXTURES || FEATURE_REFLECTANCE_IMAGE
+TexturePoint texture_here(const ShadeScene* scene, uint texture, HitRecord hit) {
+    return texture_at(scene->textures[texture], hit_position(hit), hit.u, hit.v, scene->tables);
+}
+#endif
 
 #if FEATURE_TEXTURES
 /// The normal tilted by two slopes, along the horizontal on the surface and across it.
@@ -68,12 +80,6 @@ Vec3 tilted_normal(Vec3 normal, real slope_x, real slope_y) {
     const Vec3 bitangent = vec3_cross(normal, tangent);
     return vec3_normalise(
         vec3_add(normal, vec3_add(vec3_scale(tangent, slope_x), vec3_scale(bitangent, slope_y))));
-}
-
-TexturePoint texture_here(const ShadeScene* scene, uint texture, HitRecord hit) {
-    return texture_at(scene->textures[texture],
-                      vec3(hit.position_x, hit.position_y, hit.position_z), hit.u, hit.v,
-                      scene->tables);
 }
 
 /// The material of a surface at a point, one level of each texture picked by u.a, u.b, u.c, a
@@ -108,11 +114,11 @@ uint choose_material(const ShadeScene* scene, HitRecord hit, Random4 u, Vec3 to_
 
 /// The frame stands on the shading normal, or on the geometric one where the shading normal faces
 /// away from the camera.
-SurfacePoint surface_point(const ShadeScene* scene, HitRecord hit, RayRecord ray, Random4 u) {
-    const Vec3 to_camera = vec3(-ray.direction_x, -ray.direction_y, -ray.direction_z);
+static SurfacePoint surface_point(const ShadeScene* scene, const ShadeStep* step) {
+    const HitRecord hit = step->hit;
+    const Vec3 to_camera = vec3_scale(ray_direction(step->ray), -1.0f);
     SurfacePoint point;
-    point.hit = hit;
-    point.geometric = vec3(hit.normal_x, hit.normal_y, hit.normal_z);
+    point.geometric = hit_normal(hit);
     Vec3 shading = vec3(hit.shading_x, hit.shading_y, hit.shading_z);
     if (vec3_dot(point.geometric, to_camera) < 0.0f) {
         point.geometric = vec3_scale(point.geometric, -1.0f);
@@ -121,6 +127,8 @@ SurfacePoint surface_point(const ShadeScene* scene, HitRecord hit, RayRecord ray
     shading = vec3_dot(shading, to_camera) > 0.0f ? shading : point.geometric;
     point.material = hit.material;
 #if FEATURE_TEXTURES
+    const Random4 u = random_4(step->state.pixel, step->state.sample,
+                               TEXTURE_DIMENSION + step->depth, scene->render.seed);
     point.material = choose_material(scene, hit, u, to_camera, &shading);
 #endif
     point.frame = sampling_frame(shading);
@@ -128,11 +136,10 @@ SurfacePoint surface_point(const ShadeScene* scene, HitRecord hit, RayRecord ray
     return point;
 }
 
-VertexRecord empty_vertex(void) {
-    const DirectionRecord nothing = {0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
-    VertexRecord vertex = {NO_INDEX, NO_INDEX, 0.0f, NO_INDEX, 0.0f,
-                           0.0f,     1.0f,     0u,   nothing,  nothing};
-    return vertex;
+/// Returns true when a direction, `wi` in the local frame, leaves the surface on the side that the
+/// path came from.
+int surface_is_left(SurfacePoint point, Vec3 wi, Vec3 direction) {
+    return wi.z > 0.0f && vec3_dot(point.geometric, direction) > 0.0f;
 }
 
 #endif

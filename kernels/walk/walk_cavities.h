@@ -1,6 +1,6 @@
 // Blinn's V-cavities, as a random walk meets them: facets sampled as they are seen, and what they
-// lose to single scattering given back where scattering is `multiple`
-// (host/layers/rough/lost_flux.h).
+// lose to single scattering given back where scattering is `multiple`, into both media in
+// proportion to n^2 c lost(c) (host/layers/rough/lost_flux.h makes the table).
 //
 // The table of a surface: cells of its thinner and of its denser side, the sum of etendue times
 // lost share; then for either side the edges of its cells in cosine and the lost share of each;
@@ -11,6 +11,7 @@
 #include "kernels/core/portable.h"
 #include "kernels/core/sampling.h"
 #include "kernels/core/shared.h"
+#include "kernels/core/table.h"
 #include "kernels/walk/walk_facets.h"
 
 KERNELS_BEGIN
@@ -19,12 +20,12 @@ KERNELS_BEGIN
 
 /// Cells of one side.
 typedef struct {
-    GLOBAL_CONST shared_float* edges;
-    GLOBAL_CONST shared_float* lost;
+    WalkTable edges;
+    WalkTable lost;
     uint count;
 } WalkCavitySide;
 
-DEVICE_FUNCTION WalkCavitySide walk_cavity_side(GLOBAL_CONST shared_float* table, int dense) {
+DEVICE_FUNCTION WalkCavitySide walk_cavity_side(WalkTable table, int dense) {
     const uint thin_cells = (uint)table[0];
     WalkCavitySide side;
     side.count = (uint)table[dense ? 1 : 0];
@@ -34,16 +35,8 @@ DEVICE_FUNCTION WalkCavitySide walk_cavity_side(GLOBAL_CONST shared_float* table
 }
 
 /// Index of the last of `count` ascending numbers that is not above x; 0 when all are.
-DEVICE_FUNCTION uint walk_last_below(GLOBAL_CONST shared_float* numbers, uint count, real x) {
-    uint low = 0u, high = count;
-    while (high - low > 1u) {
-        const uint middle = (low + high) / 2u;
-        if ((real)numbers[middle] <= x)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
+DEVICE_FUNCTION uint walk_last_below(WalkTable numbers, uint count, real x) {
+    return table_search(numbers + 1, count - 1u, 1u, x);
 }
 
 /// Share of the light from a cosine that single scattering loses.
@@ -79,7 +72,7 @@ DEVICE_FUNCTION real walk_cavity_density(WalkSurface surface, real cos_v, int pa
 DEVICE_FUNCTION Vec3 walk_cavity_departure(WalkSurface surface, real u1, real u2, real u3,
                                            int* passed) {
     const uint thin = (uint)surface.cavities[0], dense = (uint)surface.cavities[1];
-    GLOBAL_CONST shared_float* cumulative =
+    const WalkTable cumulative =
         surface.cavities + WALK_CAVITIES_HEADER + 2u * (thin + dense) + (dense > 0u ? 2u : 1u);
     const uint count = thin + dense;
     const real target = u1 * surface.cavities[2];

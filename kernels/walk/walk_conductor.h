@@ -28,9 +28,7 @@ void walk_reflect_by_facet(Walk* walk, uint part, float cosine) {
 void walk_connect_one_facet(Walk* walk, WalkMirror mirror) {
     const Vec3 v = walk->at.v, l = mirror.light->v;
     if (mirror.light->fluence > 0.0f)
-        walk_connect_by_facet(
-            walk, mirror, v,
-            l.z * microfacet_reflection(mirror.surface.distribution, mirror.surface.alpha, v, l));
+        walk_connect_by_facet(walk, mirror, v, walk_single_reflection(mirror.surface, v, l, 1.0f));
 }
 
 int walk_reflect_by_one_facet(Walk* walk, WalkMirror mirror, WalkDeparture* departure) {

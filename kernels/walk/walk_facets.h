@@ -1,9 +1,17 @@
-// One facet of a rough surface, as a random walk meets it: visible area, density of what the facet
-// sends into a given direction, heights on the Smith microsurface (Heitz, Hanika, d'Eon and
-// Dachsbacher 2016, sections 4 to 6; refraction after Walter et al. 2007).
+// One facet of a rough surface, as a random walk meets it: visible area, directions, and the
+// density of what the facet sends into a given direction (Heitz, Hanika, d'Eon and Dachsbacher
+// 2016; refraction after Walter et al. 2007).
 //
-// Frames: every direction is given in the frame of its own medium, z > 0 pointing away from the
-// surface; changing the medium mirrors z. v points to where the walk came from, w where it goes.
+// All formulas of the walk at rough surfaces stand in this header, in walk_microsurface.h and in
+// walk_cavities.h, as pure functions of one step each. The loops over the steps are their callers':
+// those of the device (walk_interface.h, walk_conductor.h), of the host's walk
+// (host/layers/walk/walk_surface.cpp) and of its operators (host/layers/rough). They differ in what
+// they record, in where random numbers come from and in how much a facet reflects (Fresnel, a film,
+// a conductor), which is therefore an argument of the densities.
+//
+// Frames: directions of one medium have z > 0 pointing away from the surface. v points to where the
+// walk came from, w to where it goes. What passes a facet is given in the frame of v too, so that
+// its z is negative where it leaves; each caller turns it into the frame of the medium beyond.
 #ifndef RERADIANT_WALK_FACETS_H
 #define RERADIANT_WALK_FACETS_H
 
@@ -14,6 +22,27 @@
 
 KERNELS_BEGIN
 
+/// Least cosine in Lambda, least Lambda that is divided by, and the heights that are told from the
+/// surface's bottom and top: as far as single precision goes, or, for the host, double.
+#if defined(__OPENCL_VERSION__) || defined(KERNELS_FOR_DEVICE)
+#define WALK_LEAST_COSINE REAL(1e-6)
+#define WALK_LEAST_LAMBDA REAL(1e-6)
+#define WALK_LEAST_HEIGHT REAL(1e-30)
+#define WALK_MOST_HEIGHT REAL(0.99999994)
+#else
+#define WALK_LEAST_COSINE REAL(1e-12)
+#define WALK_LEAST_LAMBDA REAL(1e-12)
+#define WALK_LEAST_HEIGHT REAL(1e-300)
+#define WALK_MOST_HEIGHT (REAL(1.0) - REAL(1e-16))
+#endif
+
+/// What the host keeps in double it reads in double.
+#ifdef __OPENCL_VERSION__
+typedef __global const shared_float* WalkTable;
+#else
+typedef const double* WalkTable;
+#endif
+
 /// A surface seen from one of its media. A mirror reflects everything: what a conductor keeps
 /// depends on wavelength and is applied elsewhere.
 typedef struct {
@@ -22,7 +51,7 @@ typedef struct {
     real eta;   ///< IOR beyond over IOR on this side
     int multiple;
     int is_mirror;
-    GLOBAL_CONST shared_float* cavities; ///< walk_cavities.h; of blinn, multiple
+    WalkTable cavities; ///< walk_cavities.h; of blinn, multiple
 } WalkSurface;
 
 DEVICE_FUNCTION WalkSurface walk_from_beyond(WalkSurface surface) {
@@ -41,7 +70,8 @@ DEVICE_FUNCTION Vec3 walk_mirrored(Vec3 v) {
 /// Smith's Lambda of a direction that leaves the surface; bounded, so that grazing directions,
 /// where it is infinite, make no 0 * inf.
 DEVICE_FUNCTION real walk_lambda(WalkSurface surface, Vec3 w) {
-    return microfacet_lambda_cos(surface.distribution, surface.alpha, w) / fmax(w.z, REAL(1e-6));
+    return microfacet_lambda_cos(surface.distribution, surface.alpha, w) /
+           fmax(w.z, WALK_LEAST_COSINE);
 }
 
 /// Area of the facets that v sees over the surface's own: v.z (1 + Lambda(v)), also for v below
@@ -64,11 +94,11 @@ DEVICE_FUNCTION Vec3 walk_reflected(Vec3 v, Vec3 h) {
     return vec3_sub(vec3_scale(h, REAL(2.0) * vec3_dot(v, h)), v);
 }
 
-/// Refracted at a facet, in the frame of the medium beyond.
+/// Refracted at a facet.
 DEVICE_FUNCTION Vec3 walk_refracted(Vec3 v, Vec3 h, real eta) {
     const real cos_i = vec3_dot(v, h);
     const real along = cos_i / eta - fresnel_cos_transmitted(cos_i, eta);
-    return walk_mirrored(vec3_sub(vec3_scale(h, along), vec3_scale(v, REAL(1.0) / eta)));
+    return vec3_sub(vec3_scale(h, along), vec3_scale(v, REAL(1.0) / eta));
 }
 
 /// Half vector of a reflection from v into w; w must not be -v.
@@ -76,17 +106,16 @@ DEVICE_FUNCTION Vec3 walk_half_reflected(Vec3 v, Vec3 w) {
     return vec3_normalise(vec3_add(v, w));
 }
 
-/// A `WalkRefraction` holds what a refraction from v into w (frame beyond) needs: the normal h of
-/// the facet that does it, the cosines at the facet on both sides, and the Jacobian |dh/dw| = eta^2
-/// |w.h| / (v.h + eta w.h)^2 (Walter et al. 2007 eq. 17), 0 when no facet does it.
+/// A `WalkRefraction` holds what a refraction from v into w needs: the normal h of the facet that
+/// does it, the cosines at the facet on both sides, and the Jacobian |dh/dw| = eta^2 |w.h| / (v.h +
+/// eta w.h)^2 (Walter et al. 2007 eq. 17), 0 when no facet does it.
 typedef struct {
     Vec3 h;
     real cos_i, cos_t, jacobian;
 } WalkRefraction;
 
 DEVICE_FUNCTION WalkRefraction walk_refraction(WalkSurface surface, Vec3 v, Vec3 w) {
-    const Vec3 through = walk_mirrored(w);
-    Vec3 h = vec3_add(v, vec3_scale(through, surface.eta));
+    Vec3 h = vec3_add(v, vec3_scale(w, surface.eta));
     WalkRefraction r;
     real denominator;
     r.h = vec3(REAL(0.0), REAL(0.0), REAL(1.0));
@@ -96,32 +125,31 @@ DEVICE_FUNCTION WalkRefraction walk_refraction(WalkSurface surface, Vec3 v, Vec3
     h = vec3_normalise(h);
     r.h = h.z < REAL(0.0) ? vec3_scale(h, REAL(-1.0)) : h;
     r.cos_i = vec3_dot(v, r.h);
-    r.cos_t = -vec3_dot(through, r.h);
+    r.cos_t = -vec3_dot(w, r.h);
     denominator = r.cos_i - surface.eta * r.cos_t;
     if (r.cos_i > REAL(0.0) && r.cos_t > REAL(0.0) && denominator != REAL(0.0))
         r.jacobian = square(surface.eta / denominator) * r.cos_t;
     return r;
 }
 
-/// Density, 1/sr, of the light that facets visible from v reflect into w, Fresnel included.
-DEVICE_FUNCTION real walk_reflection_density(WalkSurface surface, Vec3 v, Vec3 w) {
-    const Vec3 h = walk_half_reflected(v, w);
+/// Density, 1/sr, of the light that facets visible from v reflect by the half vector h, which
+/// reflect the share `reflectance` of what they get; shadowing left out.
+DEVICE_FUNCTION real walk_reflection_density(WalkSurface surface, Vec3 v, Vec3 h,
+                                             real reflectance) {
     const real area = walk_visible_area(surface, v);
-    const real cos_i = vec3_dot(v, h);
-    if (!(area > REAL(0.0)) || !(cos_i > REAL(0.0)))
+    if (!(area > REAL(0.0)) || !(vec3_dot(v, h) > REAL(0.0)))
         return REAL(0.0);
-    return walk_reflectance(surface, cos_i) * microfacet_d(surface.distribution, surface.alpha, h) /
-           (REAL(4.0) * area);
+    return reflectance * microfacet_d(surface.distribution, surface.alpha, h) / (REAL(4.0) * area);
 }
 
-/// Returns the density, 1/sr, of the light that facets visible from v refract into w (frame
-/// beyond), Fresnel included.
-DEVICE_FUNCTION real walk_refraction_density(WalkSurface surface, Vec3 v, Vec3 w) {
-    const WalkRefraction r = walk_refraction(surface, v, w);
+/// Density, 1/sr, of the light that facets visible from v refract, which let the share
+/// `transmittance` pass; shadowing left out.
+DEVICE_FUNCTION real walk_refraction_density(WalkSurface surface, Vec3 v, WalkRefraction r,
+                                             real transmittance) {
     const real area = walk_visible_area(surface, v);
     if (!(r.jacobian > REAL(0.0)) || !(area > REAL(0.0)))
         return REAL(0.0);
-    return (REAL(1.0) - walk_reflectance(surface, r.cos_i)) * r.cos_i / area * r.jacobian *
+    return transmittance * r.cos_i / area * r.jacobian *
            microfacet_d(surface.distribution, surface.alpha, r.h);
 }
 
@@ -165,32 +193,29 @@ DEVICE_FUNCTION real walk_single_share(WalkSurface surface, Vec3 v, Vec3 h, Vec3
     }
 }
 
-/// Heights are counted by the share C of the surface below them, as seen from the medium that the
-/// walk is in: 1 at the top, 1 - C from the other side. Only C matters, whatever its distribution.
-DEVICE_FUNCTION real walk_bounded_height(real height) {
-    return fmin(fmax(height, REAL(1e-30)), REAL(0.99999994));
-}
-
-/// Height of the first facet that light from v meets (u uniform in [0, 1)).
-DEVICE_FUNCTION real walk_first_height(WalkSurface surface, Vec3 v, real u) {
-    return walk_bounded_height(exp(log1p(-u) / (REAL(1.0) + walk_lambda(surface, v))));
-}
-
-/// Probability that a ray from a height leaves the surface along w, w.z > 0: C^Lambda.
-DEVICE_FUNCTION real walk_escape(WalkSurface surface, Vec3 w, real height) {
-    return exp(walk_lambda(surface, w) * log(height));
-}
-
-/// Height of the next facet on a ray along w; above 1 when the ray leaves the surface (Heitz et al.
-/// 2016 eq. 19). u uniform in [0, 1).
-DEVICE_FUNCTION real walk_next_height(WalkSurface surface, Vec3 w, real height, real u) {
-    if (w.z > REAL(0.0)) {
-        if (u < walk_escape(surface, w, height))
-            return REAL(2.0);
-        return walk_bounded_height(height * exp(-log(u) / walk_lambda(surface, w)));
+/// The same over a facet as microfacet_sample draws it, which for blinn knows of no masking: G2
+/// (v.h) / (v.z h.z), up to 2.
+DEVICE_FUNCTION real walk_drawn_share(WalkSurface surface, Vec3 v, Vec3 h, Vec3 w, real cos_w) {
+    if (surface.distribution == MICROFACET_BLINN) {
+        const real cos_v = vec3_dot(v, h);
+        return fmin(walk_cavity_seen(v, h, cos_v), walk_cavity_seen(w, h, cos_w)) * cos_v /
+               (v.z * h.z);
     }
-    return walk_bounded_height(
-        height * exp(log1p(-u) / (REAL(1.0) + walk_lambda(surface, vec3_scale(w, REAL(-1.0))))));
+    return walk_single_share(surface, v, h, w, cos_w);
+}
+
+/// Density, 1/sr with the cosine of w, of what facets reflect into w and nothing masks.
+DEVICE_FUNCTION real walk_single_reflection(WalkSurface surface, Vec3 v, Vec3 w, real reflectance) {
+    return reflectance * w.z * microfacet_reflection(surface.distribution, surface.alpha, v, w);
+}
+
+/// Density, 1/sr with the cosine of w, of what facets refract into w and nothing masks.
+DEVICE_FUNCTION real walk_single_refraction(WalkSurface surface, Vec3 v, Vec3 w, WalkRefraction r,
+                                            real transmittance) {
+    return r.jacobian > REAL(0.0)
+               ? transmittance * r.jacobian * walk_facet_pdf(surface, v, r.h) *
+                     walk_single_share(surface, v, r.h, walk_mirrored(w), r.cos_t)
+               : REAL(0.0);
 }
 
 KERNELS_END

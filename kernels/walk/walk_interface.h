@@ -9,6 +9,7 @@
 #include "kernels/core/random.h"
 #include "kernels/walk/walk_cavities.h"
 #include "kernels/walk/walk_facets.h"
+#include "kernels/walk/walk_microsurface.h"
 
 KERNELS_BEGIN
 
@@ -78,9 +79,10 @@ DEVICE_FUNCTION WalkDeparture walk_departure(void) {
     return departure;
 }
 
-/// Reflection or refraction at one facet of normal h.
+/// Reflection or refraction at one facet of normal h. The frame of the medium beyond is the mirror
+/// image of this one.
 DEVICE_FUNCTION Vec3 walk_leave_facet(WalkSurface surface, Vec3 v, Vec3 h, int passes) {
-    return passes ? walk_refracted(v, h, surface.eta) : walk_reflected(v, h);
+    return passes ? walk_mirrored(walk_refracted(v, h, surface.eta)) : walk_reflected(v, h);
 }
 
 /// Reflects or refracts a walk at a smooth interface. There are no densities: a delta has none.
@@ -97,17 +99,14 @@ DEVICE_FUNCTION void walk_single_densities(WalkSurface surface, Vec3 v, WalkTarg
                                            WalkDeparture* departure) {
     if (targets.has_same) {
         const Vec3 h = walk_half_reflected(v, targets.same);
-        departure->same_density =
-            walk_reflectance(surface, vec3_dot(v, h)) * targets.same.z *
-            microfacet_reflection(surface.distribution, surface.alpha, v, targets.same);
+        departure->same_density = walk_single_reflection(surface, v, targets.same,
+                                                         walk_reflectance(surface, vec3_dot(v, h)));
     }
     if (targets.has_beyond) {
-        const WalkRefraction r = walk_refraction(surface, v, targets.beyond);
-        if (r.jacobian > REAL(0.0)) {
-            departure->beyond_density = (REAL(1.0) - walk_reflectance(surface, r.cos_i)) *
-                                        r.jacobian * walk_facet_pdf(surface, v, r.h) *
-                                        walk_single_share(surface, v, r.h, targets.beyond, r.cos_t);
-        }
+        const Vec3 w = walk_mirrored(targets.beyond);
+        const WalkRefraction r = walk_refraction(surface, v, w);
+        departure->beyond_density = walk_single_refraction(
+            surface, v, w, r, REAL(1.0) - walk_reflectance(surface, r.cos_i));
     }
 }
 
@@ -158,29 +157,12 @@ DEVICE_FUNCTION WalkDeparture walk_cavities(WalkSurface surface, Vec3 v, WalkTar
     return departure;
 }
 
-/// A walk between facets. `surface` is seen from the medium that the walk is in.
-typedef struct {
-    WalkSurface surface;
-    Vec3 v;
-    real height;
-    int passed; ///< in the medium beyond the one of arrival
-    uint order; ///< facets met so far
-} WalkBetweenFacets;
-
-DEVICE_FUNCTION WalkBetweenFacets walk_between_facets(WalkSurface surface, Vec3 v, real u) {
-    WalkBetweenFacets walk;
-    walk.surface = surface;
-    walk.v = v;
-    walk.height = walk_first_height(surface, v, u);
-    walk.passed = 0;
-    walk.order = 0u;
-    return walk;
-}
-
 /// Density, 1/sr, with which the facet that the walk stands at reflects towards w and out. The
 /// first one's height is averaged over: 1 / (1 + Lambda + Lambda) in all.
 DEVICE_FUNCTION real walk_density_back(const WalkBetweenFacets* walk, Vec3 w) {
-    const real density = walk_reflection_density(walk->surface, walk->v, w);
+    const Vec3 h = walk_half_reflected(walk->v, w);
+    const real density = walk_reflection_density(
+        walk->surface, walk->v, h, walk_reflectance(walk->surface, vec3_dot(walk->v, h)));
     if (walk->order == 0u)
         return density * walk_single_share(walk->surface, walk->v, walk->v, w, REAL(1.0));
     return density * walk_escape(walk->surface, w, walk->height);
@@ -190,7 +172,9 @@ DEVICE_FUNCTION real walk_density_back(const WalkBetweenFacets* walk, Vec3 w) {
 /// (frame beyond the present medium) and out. The height is that of the walk, also at the first
 /// facet.
 DEVICE_FUNCTION real walk_density_through(const WalkBetweenFacets* walk, Vec3 w) {
-    const real density = walk_refraction_density(walk->surface, walk->v, w);
+    const WalkRefraction r = walk_refraction(walk->surface, walk->v, walk_mirrored(w));
+    const real density = walk_refraction_density(
+        walk->surface, walk->v, r, REAL(1.0) - walk_reflectance(walk->surface, r.cos_i));
     return density > REAL(0.0) ? density * walk_escape(walk->surface, w, REAL(1.0) - walk->height)
                                : REAL(0.0);
 }
@@ -213,16 +197,13 @@ DEVICE_FUNCTION void walk_add_densities(const WalkBetweenFacets* walk, WalkTarge
 /// out.
 DEVICE_FUNCTION int walk_to_next_facet(WalkBetweenFacets* walk, Vec3 h, int passes, real u,
                                        Vec3* direction) {
+    real height;
     *direction = walk_leave_facet(walk->surface, walk->v, h, passes);
-    if (passes) {
-        walk->surface = walk_from_beyond(walk->surface);
-        walk->height = walk_bounded_height(REAL(1.0) - walk->height);
-        walk->passed = !walk->passed;
-    }
-    walk->height = walk_next_height(walk->surface, *direction, walk->height, u);
-    walk->v = vec3_scale(*direction, REAL(-1.0));
-    ++walk->order;
-    return walk->height > REAL(1.0);
+    if (passes)
+        walk_pass_facet(walk);
+    height = walk_next_height(walk->surface, *direction, walk->height, u);
+    walk_meet_facet(walk, *direction, height);
+    return height > REAL(1.0);
 }
 
 /// Facets that a walk meets before it is put under roulette: far beyond what light meets (each

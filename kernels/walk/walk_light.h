@@ -119,7 +119,7 @@ WalkDeparture walk_light_through(WalkSurface surface, Vec3 v, WalkRandom* random
     const float reflectance = cos_i > 0.0f ? walk_reflectance(surface, cos_i) : 1.0f;
     if (!(reflectance < 1.0f))
         return departure;
-    departure.direction = walk_refracted(v, h, surface.eta);
+    departure.direction = walk_leave_facet(surface, v, h, 1);
     departure.passed = departure.direction.z > 0.0f;
     if (departure.passed)
         departure.weight =

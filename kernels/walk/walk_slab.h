@@ -3,24 +3,10 @@
 #define RERADIANT_WALK_SLAB_H
 
 #include "kernels/core/features.h"
-#include "kernels/core/sampling.h"
-#include "kernels/stack/layer_stack.h"
+#include "kernels/scatter/henyey_greenstein.h"
 #include "kernels/walk/walk_state.h"
 
 #if FEATURE_SCATTERING_SLABS
-/// Deflected by Henyey and Greenstein 1941: 1 - cos = (1 - g) (1 - u) (s + 1 - g) / (1 - g + 2 g
-/// u), s = (1 - g) (1 + g) / (1 - g + 2 g u), which divides by no g and keeps its digits near g
-/// = 1.
-Vec3 walk_deflected(Vec3 direction, float g, float u1, float u2) {
-    const float d = (1.0f - g) + 2.0f * g * u1;
-    const float s = (1.0f - g) * (1.0f + g) / d;
-    const float fall = fmin((1.0f - g) * (1.0f - u1) * (s + (1.0f - g)) / d, 2.0f);
-    const float sine = sqrt(fall * (2.0f - fall));
-    const Vec3 around = sampling_circle(u2);
-    return vec3_normalise(sampling_to_world(sampling_frame(direction),
-                                            vec3(sine * around.x, sine * around.y, 1.0f - fall)));
-}
-
 /// Connects a scattering event at a height (0: top of the slab, 1: its end) to the light that
 /// passes there; w: where the walk comes from.
 void walk_connect_in_slab(Walk* walk, uint k, float height, Vec3 back) {
@@ -30,8 +16,9 @@ void walk_connect_in_slab(Walk* walk, uint k, float height, Vec3 back) {
             continue;
         const Vec3 l = down ? light->v : walk_mirrored(light->v);
         // light comes along -l and leaves along `back`
-        if (walk_connect(walk, light,
-                         layer_stack_phase(walk->stack.parts[k].anisotropy, -vec3_dot(l, back))))
+        if (walk_connect(
+                walk, light,
+                henyey_greenstein_phase(walk->stack.parts[k].anisotropy, -vec3_dot(l, back))))
             walk_write(&walk->writer, WALK_CODE(WALK_LIGHT_PASS, k),
                        (down ? height : 1.0f - height) / light->v.z);
     }
@@ -63,7 +50,7 @@ int walk_scatter_in_slab(Walk* walk, uint k, WalkPartRecord part) {
         const Vec3 back = walk->at.down ? walk->at.v : walk_mirrored(walk->at.v);
         walk_connect_in_slab(walk, k, height, back);
         const float u1 = walk_uniform(&walk->random), u2 = walk_uniform(&walk->random);
-        const Vec3 w = walk_deflected(vec3_scale(back, -1.0f), part.anisotropy, u1, u2);
+        const Vec3 w = henyey_greenstein_sample(vec3_scale(back, -1.0f), part.anisotropy, u1, u2);
         walk->at.down = w.z < 0.0f;
         walk->at.v = vec3(-w.x, -w.y, fabs(w.z));
         walk->is_delta = 0;

@@ -1,7 +1,8 @@
 #include "host/check/check.h"
 #include "reradiant/error.h"
 #include "reradiant/paths.h"
-#include "tests/full_run.h"
+#include "tests/support/first_device.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -13,15 +14,9 @@
 namespace reradiant {
 namespace {
 
-namespace fs = std::filesystem;
+using test::device;
 
-const Device& device() {
-    static const Device opened = [] {
-        prepare_opencl(0);
-        return Device("");
-    }();
-    return opened;
-}
+namespace fs = std::filesystem;
 
 CheckReport checked(const std::string& only, std::size_t samples = 2000, bool in_double = false) {
     CheckOptions options;
@@ -68,7 +63,7 @@ private:
 constexpr const char* fresnel_sum = "r = REAL(0.5) * (s * s + p * p);";
 
 TEST(Check, EveryFunctionPassesOnThisDevice) {
-    const CheckReport report = checked("", is_full_run() ? 1000000 : 2000);
+    const CheckReport report = checked("", test::is_full_run() ? 1000000 : 2000);
     EXPECT_TRUE(report.passed()) << failures(report);
     EXPECT_GT(report.functions.size(), 60U);
     for (const FunctionReport& function : report.functions) {

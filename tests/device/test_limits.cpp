@@ -4,6 +4,7 @@
 #include "host/device/opencl_device.h"
 #include "host/device/program.h"
 #include "reradiant/error.h"
+#include "tests/support/first_device.h"
 
 #include <gtest/gtest.h>
 
@@ -12,13 +13,7 @@
 namespace reradiant {
 namespace {
 
-const Device& device() {
-    static const Device opened = [] {
-        prepare_opencl(0);
-        return Device("");
-    }();
-    return opened;
-}
+using test::device;
 
 template <typename Action>
 std::string error_of(Action action) {

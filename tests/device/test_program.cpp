@@ -1,6 +1,7 @@
 #include "host/device/program.h"
 #include "reradiant/error.h"
 #include "reradiant/paths.h"
+#include "tests/support/first_device.h"
 
 #include <gtest/gtest.h>
 
@@ -11,18 +12,13 @@
 namespace reradiant {
 namespace {
 
+using test::device;
+
 namespace fs = std::filesystem;
 
 /// A cache of its own, so that what a test breaks is its own.
 class ProgramCache : public testing::Test {
 protected:
-    static const Device& device() {
-        static const Device opened = [] {
-            prepare_opencl(0);
-            return Device("");
-        }();
-        return opened;
-    }
     void SetUp() override {
         folder_ = fs::temp_directory_path() /
                   ("reradiant-cache-" + std::to_string(::getpid()) + "-" +

@@ -2,6 +2,7 @@
 
 #include "reradiant/error.h"
 #include "reradiant/spectral_image.h"
+#include "tests/support/scratch_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -12,35 +13,12 @@
 #include <functional>
 #include <iterator>
 #include <string>
-#include <unistd.h>
 
 namespace reradiant {
 
-/// An empty folder for one test, removed with it.
-class TemporaryFolder {
-public:
-    explicit TemporaryFolder(const std::string& purpose = "files") {
-        const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-        path_ = std::filesystem::temp_directory_path() /
-                ("reradiant-" + std::string(test->test_suite_name()) + "-" + test->name() + "-" +
-                 purpose + "-" + std::to_string(::getpid()));
-        std::filesystem::remove_all(path_);
-        std::filesystem::create_directories(path_);
-    }
-    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-    /// Count of files, hidden ones included: nothing may be left over.
-    std::size_t file_count() const {
-        return static_cast<std::size_t>(
-            std::distance(std::filesystem::directory_iterator(path_), {}));
-    }
-
-private:
-    std::filesystem::path path_;
-};
+using test::file_bytes;
+using test::put_bytes;
+using test::TemporaryFolder;
 
 /// Every value different and some of them hard: tiny, huge, negative, zero.
 inline SpectralImage patterned_image(int width, int height, const WavelengthGrid& bands) {
@@ -63,15 +41,6 @@ inline SpectralImage flat_image(int width, int height, const WavelengthGrid& ban
     SpectralImage image = patterned_image(width, height, bands);
     std::fill(image.values.begin(), image.values.end(), value);
     return image;
-}
-
-inline std::string file_bytes(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-inline void put_bytes(const std::filesystem::path& file, const std::string& bytes) {
-    std::ofstream(file, std::ios::binary) << bytes;
 }
 
 /// Runs `action` and returns the message of the Error it must throw, which must have this exit

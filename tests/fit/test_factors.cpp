@@ -1,7 +1,7 @@
 #include "host/fit/models/factor_model.h"
 #include "reradiant/error.h"
 #include "tests/fit/fit_cases.h"
-#include "tests/full_run.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -74,7 +74,7 @@ TEST(Factors, RankIsFoundAndTheFitAverages) {
 
 TEST(Factors, BandsCoverTheTruth) {
     const ReradiationMatrix truth = true_matrix(two_fluorophores());
-    const int runs = is_full_run() ? 20 : 2;
+    const int runs = test::is_full_run() ? 20 : 2;
     for (const double noise : {0.001, 0.01, 0.05}) {
         double mean = 0.0;
         for (int run = 0; run < runs; ++run)
@@ -94,7 +94,7 @@ TEST(Factors, BandsCoverTheTruthWhenTermsAreByEvidence) {
     for (const std::size_t count : {std::size_t{2}, std::size_t{1}}) {
         list.resize(count);
         const ReradiationMatrix truth = true_matrix(list);
-        const unsigned runs = is_full_run() ? 20 : 4;
+        const unsigned runs = test::is_full_run() ? 20 : 4;
         double mean = 0.0;
         for (unsigned run = 0; run < runs; ++run)
             mean += coverage(fit_reradiation(
@@ -104,8 +104,9 @@ TEST(Factors, BandsCoverTheTruthWhenTermsAreByEvidence) {
                     runs;
         EXPECT_GE(mean, 0.90) << count;  // the bar of the project
         EXPECT_LE(mean, 0.995) << count; // a mean of 4 runs; that of 20 is 0.99 at most
-        if (is_full_run())
+        if (test::is_full_run()) {
             EXPECT_LE(mean, 0.99) << count;
+        }
     }
 }
 

@@ -1,5 +1,5 @@
 #include "tests/fit/fit_cases.h"
-#include "tests/full_run.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -67,8 +67,9 @@ TEST_P(MeasuredFit, FactorsOfRankThreeMeetTheBar) {
     EXPECT_LE(three.bytes, 1080u);
     EXPECT_LE(three.relative_rmse, GetParam().rank_3 + rounding);
     // 0.2 to 0.5 on a quiet machine.
-    if (is_full_run())
+    if (test::is_full_run()) {
         EXPECT_LE(three.seconds, 2.0);
+    }
 }
 
 /// CIBA12's photon balance binds, in a valley that falls by less than the noise for hundreds of

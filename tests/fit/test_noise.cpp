@@ -2,7 +2,7 @@
 #include "host/fit/data/prepared_target.h"
 #include "host/fit/data/rounding_steps.h"
 #include "tests/fit/fit_cases.h"
-#include "tests/full_run.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -87,7 +87,7 @@ TEST(NoiseEstimate, TwoDecimalsOfARealTable) {
 }
 
 TEST(NoiseEstimate, RoundingIsInTheBands) {
-    const unsigned runs = is_full_run() ? 20 : 3;
+    const unsigned runs = test::is_full_run() ? 20 : 3;
     const ReradiationMatrix truth = true_matrix(two_fluorophores());
     double mean = 0.0;
     for (unsigned seed = 1; seed <= runs; ++seed) {
@@ -115,7 +115,7 @@ TEST(NoiseEstimate, ThreeDigitsOfEveryEntry) {
 }
 
 TEST(NoiseEstimate, ZerosOfCutOffNoiseAreNoCertainties) {
-    const unsigned runs = is_full_run() ? 20 : 3;
+    const unsigned runs = test::is_full_run() ? 20 : 3;
     const ReradiationMatrix truth = true_matrix(two_fluorophores());
     const double noise = 0.02 * stokes_peak(truth);
     double mean = 0.0;

@@ -1,6 +1,6 @@
 #include "host/fit/result/fit_summary.h"
 #include "tests/fit/fit_cases.h"
-#include "tests/full_run.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -50,9 +50,9 @@ BispectralData few_columns(const WavelengthGrid& excitation, double noise_of_pea
 } // namespace
 
 TEST(OrdinarySets, ResidualsAreNoise) {
-    const unsigned sets = is_full_run() ? 200 : 8;
+    const unsigned sets = test::is_full_run() ? 200 : 8;
     for (unsigned seed = 1; seed <= sets; ++seed) {
-        const FitResult fit = fit_reradiation(ordinary_set(seed, is_full_run()), {});
+        const FitResult fit = fit_reradiation(ordinary_set(seed, test::is_full_run()), {});
         EXPECT_EQ(fit.failure, "") << seed;
         EXPECT_EQ(fit.shortfall, "") << seed;
         EXPECT_GE(fit.rank, 1) << seed;

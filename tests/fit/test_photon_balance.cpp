@@ -1,5 +1,5 @@
 #include "tests/fit/fit_cases.h"
-#include "tests/full_run.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ double largest_balance(const ReradiationMatrix& matrix) {
 } // namespace
 
 TEST(PhotonBalance, EveryWhiteEndsWithAMatrixAndItsBandsHold) {
-    const unsigned sets = is_full_run() ? 500 : 6;
+    const unsigned sets = test::is_full_run() ? 500 : 6;
     const WavelengthGrid grid{300.0, 10.0, 41};
     for (const auto* dyes : {&one_dye, &two_dyes}) {
         const ReradiationMatrix truth = white_matrix(*dyes, grid, grid);
@@ -39,7 +39,7 @@ TEST(PhotonBalance, EveryWhiteEndsWithAMatrixAndItsBandsHold) {
         }
         // Entries of one data set are wrong together: six of them waver by some per cent.
         EXPECT_GE(mean, 0.90) << dyes->size();
-        EXPECT_LE(mean, is_full_run() ? 0.99 : 1.0) << dyes->size();
+        EXPECT_LE(mean, test::is_full_run() ? 0.99 : 1.0) << dyes->size();
     }
 }
 

@@ -5,7 +5,7 @@
 #include "reradiant/reradiation.h"
 #include "tests/film/film_fixtures.h"
 #include "tests/fit/fit_cases.h"
-#include "tests/full_run.h"
+#include "tests/support/full_run.h"
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>
@@ -138,7 +138,7 @@ TEST(StackInversion, BandsThroughTheLayerCoverTheTruth) {
     FitSettings settings;
     settings.stack = varnish();
     settings.rank = 1;
-    const unsigned runs = is_full_run() ? 20 : 4;
+    const unsigned runs = test::is_full_run() ? 20 : 4;
     for (const double noise : {1e-4, 2e-3}) {
         double mean = 0.0;
         for (unsigned seed = 1; seed <= runs; ++seed)

@@ -1,7 +1,7 @@
 #include "host/fit/synth/synth_band.h"
 #include "reradiant/reradiation.h"
 #include "reradiant/synth.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 #include <Eigen/LU>
 
@@ -73,7 +73,7 @@ std::array<double, 2> moments(const Eigen::MatrixXd& values, int column) {
     return {first / sum, second / sum - first * first / (sum * sum)};
 }
 
-class Synth : public ScratchFolder {};
+class Synth : public test::ScratchFolder {};
 
 } // namespace
 

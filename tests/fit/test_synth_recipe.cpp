@@ -1,7 +1,7 @@
 #include "reradiant/error.h"
 #include "reradiant/reradiation.h"
 #include "reradiant/synth.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ constexpr const char* good = "reflectance = 0.1\n"
                              "excitation = { peak_nm = 480, width_nm = 60, skew = 0.7 }\n"
                              "emission = { peak_nm = 560, width_nm = 50 }\n";
 
-class SynthRecipes : public ScratchFolder {
+class SynthRecipes : public test::ScratchFolder {
 protected:
     SynthRecipe read(const std::string& text) const {
         return read_synth_recipe(write("recipe.toml", text));
@@ -81,11 +81,11 @@ TEST_F(SynthRecipes, EmissionMayBeShiftedOrMirrored) {
 }
 
 TEST_F(SynthRecipes, TheExamplesAreGood) {
-    const std::filesystem::path folder =
+    const std::filesystem::path examples =
         std::filesystem::path(RERADIANT_SOURCE_DIR) / "tools" / "examples";
-    const SynthRecipe orange = read_synth_recipe(folder / "synth-orange.toml");
+    const SynthRecipe orange = read_synth_recipe(examples / "synth-orange.toml");
     EXPECT_GT(orange.instrument.spill, 0.0);
-    const SynthRecipe varnished = read_synth_recipe(folder / "synth-varnished.toml");
+    const SynthRecipe varnished = read_synth_recipe(examples / "synth-varnished.toml");
     EXPECT_EQ(varnished.fluorophores.size(), 2u);
     EXPECT_EQ(varnished.geometries.size(), 6u);
     for (const SynthRecipe& recipe : {orange, varnished}) {

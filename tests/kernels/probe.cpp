@@ -5,14 +5,6 @@
 
 namespace reradiant::test {
 
-const Device& device() {
-    static const Device opened = [] {
-        prepare_opencl(0);
-        return Device("");
-    }();
-    return opened;
-}
-
 const cl::Program& probes() {
     static const cl::Program program =
         build_program(device(), "tests/kernels/probes.cl", {{"CHUNKS", 4}, {"LOBES", 1}});

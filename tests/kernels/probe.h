@@ -3,6 +3,7 @@
 #include "host/device/buffer.h"
 #include "host/device/opencl_device.h"
 #include "host/device/program.h"
+#include "tests/support/first_device.h"
 
 #include <cmath>
 #include <random>
@@ -12,7 +13,6 @@
 
 namespace reradiant::test {
 
-const Device& device();
 /// The program of probes.cl with every feature on and four vectors of lanes.
 const cl::Program& probes();
 

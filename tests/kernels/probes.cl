@@ -8,12 +8,13 @@
 #include "kernels/core/shared.h"
 #include "kernels/core/table.h"
 #include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/henyey_greenstein.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scene/camera.h"
 #include "kernels/scene/lights.h"
 #include "kernels/stack/layer_stack.h"
 #include "kernels/stack/reradiation.h"
-#include "kernels/walk/walk_facets.h"
+#include "kernels/walk/walk_microsurface.h"
 
 #define ITEM                                                                                       \
     const uint i = (uint)get_global_id(0);                                                         \
@@ -113,7 +114,7 @@ __kernel void probe_descend(__global const float* in, __global float* out, uint 
     ITEM;
     Vec3 wi = vec3(in[6 * i], in[6 * i + 1], in[6 * i + 2]);
     Vec3 wo = vec3(in[6 * i + 3], in[6 * i + 4], in[6 * i + 5]);
-    const LayerDescent descent = layer_stack_descend(layers, layer_count, 0, wi, wo);
+    const LayerDescent descent = model_a_descend(layers, layer_count, 0, wi, wo);
     out[3 * i] = descent.way_in * descent.way_out;
     out[3 * i + 1] = descent.wi.z;
     out[3 * i + 2] = descent.wo.z;
@@ -121,7 +122,7 @@ __kernel void probe_descend(__global const float* in, __global float* out, uint 
 
 __kernel void probe_phase(__global const float* in, __global float* out, uint count) {
     ITEM;
-    out[i] = layer_stack_phase(in[2 * i], in[2 * i + 1]);
+    out[i] = henyey_greenstein_phase(in[2 * i], in[2 * i + 1]);
 }
 
 // in, out: LANES values an item; factors: [2 * rank][LANES]
@@ -152,15 +153,18 @@ __kernel void probe_dense(__global const float* in, __global float* out, uint co
 }
 
 // in: distribution, alpha, eta, v, w, height, u; out: visible area, densities of reflection and
-// refraction, probability of escape, next height
+// refraction (all of it), probability of escape, next height, and that of a ray that stays
 __kernel void probe_walk_facets(__global const float* in, __global float* out, uint count) {
     ITEM;
     __global const float* p = in + 11 * i;
     const WalkSurface surface = {(int)p[0], p[1], p[2], 1, 0, 0};
     const Vec3 v = vec3(p[3], p[4], p[5]), w = vec3(p[6], p[7], p[8]);
-    out[5 * i] = walk_visible_area(surface, v);
-    out[5 * i + 1] = walk_reflection_density(surface, v, w);
-    out[5 * i + 2] = walk_refraction_density(surface, v, w);
-    out[5 * i + 3] = walk_escape(surface, w, p[9]);
-    out[5 * i + 4] = walk_next_height(surface, w, p[9], p[10]);
+    const Vec3 h = walk_half_reflected(v, w);
+    const WalkRefraction r = walk_refraction(surface, v, walk_mirrored(w));
+    out[6 * i] = walk_visible_area(surface, v);
+    out[6 * i + 1] = walk_reflection_density(surface, v, h, 1.0f);
+    out[6 * i + 2] = walk_refraction_density(surface, v, r, 1.0f);
+    out[6 * i + 3] = walk_escape(surface, w, p[9]);
+    out[6 * i + 4] = walk_next_height(surface, w, p[9], p[10]);
+    out[6 * i + 5] = walk_met_height(surface, w, p[9], p[10]);
 }

@@ -1,6 +1,6 @@
 // The film kernel itself: what it refuses, and that its sums do not stop growing.
 #include "host/device/opencl_device.h"
-#include "kernels/core/shared.h"
+#include "kernels/stages/arguments.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>
@@ -29,20 +29,24 @@ public:
         for (std::size_t i = 0; i < lanes; ++i)
             sums_[i] = sum;
     }
-    void add(const std::vector<float>& radiance) {
-        const std::size_t paths = radiance.size() / lanes;
+    void add(const std::vector<float>& added) {
+        const std::size_t samples = added.size() / lanes;
         const DeviceArray<float> sums(device(), std::span<const float>(sums_));
         const DeviceArray<float> statistics(device(), std::span<const float>(statistics_));
-        const DeviceArray<float> in(device(), std::span<const float>(radiance));
-        const std::vector<PathState> states(paths, PathState{});
-        const DeviceArray<PathState> path(device(), std::span<const PathState>(states));
-        const DeviceArray<std::int32_t> bands(device(), lanes);
+        const DeviceArray<float> radiance(device(), std::span<const float>(added));
+        const std::vector<PathState> states(samples, PathState{});
+        const DeviceArray<PathState> paths(device(), std::span<const PathState>(states));
+        const DeviceArray<std::int32_t> film_bands(device(), lanes);
         const std::vector<float> ones(2 * lanes, 1.0f);
-        const DeviceArray<float> weights(device(), std::span<const float>(ones));
+        const DeviceArray<float> film_weights(device(), std::span<const float>(ones));
+        const DeviceArray<float>& y_weights = film_weights;
+        const BatchRecord batch{0, 0, 1, 0, static_cast<std::uint32_t>(samples), 0};
         Kernel kernel(program_, "film", 8);
-        kernel.bind(sums.buffer(), statistics.buffer(), in.buffer(), path.buffer(), bands.buffer(),
-                    weights.buffer(), weights.buffer(), cl_uint{0}, static_cast<cl_uint>(paths),
-                    cl_uint{1});
+#define ARRAY(type, name) (name).buffer()
+#define RECORD(type, name) name
+        kernel.bind(FILM_ARGUMENTS(ARRAY, ARRAY, ARRAY, RECORD));
+#undef ARRAY
+#undef RECORD
         kernel.launch(device(), 1);
         const auto mapped = sums.map(CL_MAP_READ, 0, rows * lanes);
         sums_.assign(mapped.span().begin(), mapped.span().end());
@@ -53,7 +57,9 @@ public:
     double sum(std::size_t lane) const {
         return static_cast<double>(sums_[lane]) - static_cast<double>(sums_[lanes + lane]);
     }
-    float refused() const { return statistics_[4]; }
+    float refused() const {
+        return statistics_[4];
+    }
 
 private:
     cl::Program program_;

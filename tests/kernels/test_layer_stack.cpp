@@ -25,7 +25,7 @@ TEST(KernelLayerStack, ModelAMatchesDouble) {
         run_probe("probe_descend", input, count, 3, buffer.buffer(), 3u);
     for (std::size_t i = 0; i < count; ++i) {
         const float* p = input.data() + 6 * i;
-        const kernels::LayerDescent descent = kernels::layer_stack_descend(
+        const kernels::LayerDescent descent = kernels::model_a_descend(
             layers.data(), 3, nullptr, vec3(p[0], p[1], p[2]), vec3(p[3], p[4], p[5]));
         const double expected = descent.way_in * descent.way_out;
         EXPECT_LT(relative_difference(found[3 * i], expected, 1e-3), 1e-3) << i;

@@ -21,6 +21,18 @@ LightRecord record(const float* p) {
     return light;
 }
 
+TEST(KernelLights, AreChosenByTheirCumulativeProbability) {
+    std::vector<LightRecord> lights(3, LightRecord{});
+    lights[0].cumulative = 0.25f;
+    lights[1].cumulative = 0.25f; // is never chosen
+    lights[2].cumulative = 0.9999f; // rounding left a gap
+    EXPECT_EQ(kernels::lights_choose(lights.data(), 3, 0.0), 0u);
+    EXPECT_EQ(kernels::lights_choose(lights.data(), 3, 0.2499), 0u);
+    EXPECT_EQ(kernels::lights_choose(lights.data(), 3, 0.25), 2u);
+    EXPECT_EQ(kernels::lights_choose(lights.data(), 3, 0.99999), 2u);
+    EXPECT_EQ(kernels::lights_choose(lights.data(), 1, 0.5), 0u);
+}
+
 TEST(KernelLights, SamplesMatchDouble) {
     Source source(11);
     std::vector<float> input;

@@ -1,6 +1,7 @@
 #include "kernels/core/random.h"
 #include "kernels/core/wavelength.h"
 #include "tests/kernels/probe.h"
+#include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -37,10 +38,7 @@ TEST(KernelRandom, NeighbouringCountersFillTheSquareEvenly) {
         const kernels::Random4 r = kernels::random_4(i % 256, i / 256, 3u, 0u);
         ++cells[static_cast<std::size_t>(r.a * 16) * 16 + static_cast<std::size_t>(r.b * 16)];
     }
-    double chi = 0.0;
-    const double expected = count / 256.0;
-    for (const int cell : cells)
-        chi += (cell - expected) * (cell - expected) / expected;
+    const double chi = test::chi_square(cells, count / 256.0);
     EXPECT_LT(chi, 255 + 4.75 * std::sqrt(510.0) + 12);
     EXPECT_GT(chi, 255 - 4.75 * std::sqrt(510.0));
 }

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace reradiant {
 namespace {
 
@@ -43,6 +46,26 @@ TEST(KernelTable, TransmissionOfGlassInterpolatesToAMillionth) {
             value += weights[k] * transmission(u * u);
         }
         EXPECT_NEAR(value, transmission(c), 1e-6) << c;
+    }
+}
+
+TEST(KernelTable, SearchCountsTheNumbersThatAreNotAbove) {
+    Source source(5);
+    for (std::size_t count = 0; count < 20; ++count) {
+        std::vector<float> numbers;
+        for (std::size_t i = 0; i < count; ++i) // many are equal
+            numbers.push_back(std::floor(static_cast<float>(source.uniform(0, 8))) / 8.0f);
+        std::sort(numbers.begin(), numbers.end());
+        std::vector<float> apart(3 * count + 1, -1.0f);
+        for (std::size_t i = 0; i < count; ++i)
+            apart[3 * i] = numbers[i];
+        for (int i = -1; i <= 17; ++i) {
+            const double x = i / 16.0;
+            const auto expected = std::upper_bound(numbers.begin(), numbers.end(), x);
+            EXPECT_EQ(kernels::table_search(apart.data(), static_cast<unsigned>(count), 3, x),
+                      expected - numbers.begin())
+                << count << " numbers, " << x;
+        }
     }
 }
 

@@ -1,4 +1,5 @@
 #include "kernels/walk/walk_interface.h"
+#include "kernels/walk/walk_microsurface.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>
@@ -33,28 +34,52 @@ TEST(KernelWalk, FacetsMatchDouble) {
         input.push_back(static_cast<float>(source.uniform(1e-3, 0.999)));
         input.push_back(static_cast<float>(source.uniform(0.0, 1.0)));
     }
-    const std::vector<float> found = run_probe("probe_walk_facets", input, count, 5);
+    const std::vector<float> found = run_probe("probe_walk_facets", input, count, 6);
     for (std::size_t i = 0; i < count; ++i) {
         const float* p = input.data() + 11 * i;
+        const float* out = found.data() + 6 * i;
         const WalkSurface surface = surface_of(static_cast<int>(p[0]), p[1], p[2]);
         const Vec3 v = vec3(p[3], p[4], p[5]), w = vec3(p[6], p[7], p[8]);
+        const Vec3 h = walk_half_reflected(v, w);
+        const kernels::WalkRefraction r = walk_refraction(surface, v, walk_mirrored(w));
         // beckmann's area below the horizon is a difference; densities stand over it
         const double bound = v.z < 0.0 ? 2e-2 : 1e-3;
         const double escape = walk_escape(surface, w, p[9]);
-        EXPECT_LT(relative_difference(found[5 * i], walk_visible_area(surface, v), 1e-4), bound);
-        EXPECT_LT(
-            relative_difference(found[5 * i + 1], walk_reflection_density(surface, v, w), 1e-2),
-            bound)
+        EXPECT_LT(relative_difference(out[0], walk_visible_area(surface, v), 1e-4), bound);
+        EXPECT_LT(relative_difference(out[1], walk_reflection_density(surface, v, h, 1.0), 1e-2),
+                  bound)
             << i;
-        EXPECT_LT(
-            relative_difference(found[5 * i + 2], walk_refraction_density(surface, v, w), 1e-2),
-            bound)
+        EXPECT_LT(relative_difference(out[2], walk_refraction_density(surface, v, r, 1.0), 1e-2),
+                  bound)
             << i;
-        EXPECT_NEAR(found[5 * i + 3], escape, 1e-4) << i;
+        EXPECT_NEAR(out[3], escape, 1e-4) << i;
         if (std::abs(p[10] - escape) > 1e-4) {
             const double height = walk_next_height(surface, w, p[9], p[10]);
-            EXPECT_LT(relative_difference(found[5 * i + 4], height, 1e-3), 1e-3) << i;
+            EXPECT_LT(relative_difference(out[4], height, 1e-3), 1e-3) << i;
         }
+        const double met = walk_met_height(surface, w, p[9], p[10]);
+        EXPECT_LT(relative_difference(out[5], met, 1e-3), 1e-3) << i;
+    }
+}
+
+/// A ray that stays is one that did not leave: both functions of heights say the same of it.
+TEST(KernelWalk, MetHeightsAreNextHeightsOfRaysThatStay) {
+    Source source(31);
+    for (int i = 0; i < 10000; ++i) {
+        const WalkSurface surface =
+            surface_of(i % 2 ? MICROFACET_GGX : MICROFACET_BECKMANN, source.uniform(0.1, 1.0), 1.5);
+        std::vector<float> direction;
+        source.push_direction(direction);
+        const Vec3 w = vec3(direction[0], direction[1], i % 3 ? direction[2] : -direction[2]);
+        const double height = source.uniform(1e-3, 0.999), u = source.uniform(0.0, 1.0);
+        const double escape = walk_escape(surface, w, height);
+        // where nearly all leave, 1 - u * stays has lost the digits of what stays
+        if (escape > 0.999)
+            continue;
+        const double next =
+            walk_next_height(surface, w, height, w.z > 0.0 ? 1.0 - u * (1.0 - escape) : u);
+        EXPECT_NEAR(walk_met_height(surface, w, height, u), next, 1e-9) << i;
+        EXPECT_LT(next, 1.0);
     }
 }
 

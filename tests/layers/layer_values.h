@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reradiant/adding.h"
+#include "reradiant/stack_model.h"
 
 #include <optional>
 #include <vector>

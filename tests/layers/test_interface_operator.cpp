@@ -1,5 +1,5 @@
 #include "host/layers/rough/interface_operator.h"
-#include "tests/layers/private_cache.h"
+#include "tests/support/private_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using namespace reradiant;
 
 namespace {
 
-const PrivateCache cache("interface-operator");
+const test::PrivateCache cache("interface-operator");
 
 double largest_loss(const InterfaceOperator& op) {
     const Eigen::VectorXd sums = op.exchange.colwise().sum().transpose();
@@ -69,7 +69,7 @@ TEST(InterfaceOperator, DamagedCacheFilesAreComputedAgain) {
         std::ifstream(out) >> text;
         return text;
     };
-    const PrivateCache own("interface-damage");
+    const test::PrivateCache own("interface-damage");
     const RoughInterface interface { 1.7, Distribution::Ggx, 0.7, Scattering::Single };
     const std::filesystem::path out = own.folder().string() + ".txt";
     // computed without threads: those of the parent do not exist in a forked child

@@ -1,7 +1,7 @@
 // Adding in double precision over random stacks: shares stay shares, and light is not made.
-#include "tests/full_run.h"
 #include "tests/layers/layer_values.h"
-#include "tests/layers/private_cache.h"
+#include "tests/support/full_run.h"
+#include "tests/support/private_cache.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -14,7 +14,7 @@ using namespace reradiant;
 
 namespace {
 
-const PrivateCache cache("random-stacks");
+const test::PrivateCache cache("random-stacks");
 
 using Engine = std::mt19937_64;
 
@@ -96,7 +96,8 @@ void expect_sound(std::size_t count, int directions, MakeStack make) {
 } // namespace
 
 TEST(RandomStacks, SmoothOnesConserveEnergyAtEveryAngle) {
-    expect_sound(is_full_run() ? 1000000 : 20000, is_full_run() ? 20 : 10, smooth_stack);
+    expect_sound(test::is_full_run() ? 1000000 : 20000, test::is_full_run() ? 20 : 10,
+                 smooth_stack);
 }
 
 TEST(RandomStacks, SmoothCoatOverARoughOneMakesNoLight) {
@@ -114,5 +115,5 @@ TEST(RandomStacks, SmoothCoatOverARoughOneMakesNoLight) {
 }
 
 TEST(RandomStacks, RoughOnesConserveEnergyAtEveryAngle) {
-    expect_sound(is_full_run() ? 2000 : 6, 500, rough_stack);
+    expect_sound(test::is_full_run() ? 2000 : 6, 500, rough_stack);
 }

@@ -1,8 +1,8 @@
 #include "kernels/scatter/fresnel.h"
 #include "kernels/scatter/microfacet.h"
 #include "tests/layers/layer_values.h"
-#include "tests/layers/private_cache.h"
 #include "tests/layers/reference_walk.h"
+#include "tests/support/private_cache.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -13,7 +13,7 @@ using namespace reradiant;
 
 namespace {
 
-const PrivateCache cache("rough-transport");
+const test::PrivateCache cache("rough-transport");
 
 double cos_deg(double degrees) {
     return std::cos(degrees * M_PI / 180.0);

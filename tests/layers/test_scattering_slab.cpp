@@ -1,8 +1,8 @@
 #include "host/layers/angular/scattering_slab.h"
 #include "reradiant/error.h"
 #include "tests/layers/layer_values.h"
-#include "tests/layers/private_cache.h"
 #include "tests/layers/reference_walk.h"
+#include "tests/support/private_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ using namespace reradiant;
 
 namespace {
 
-const PrivateCache cache("scattering-slab");
+const test::PrivateCache cache("scattering-slab");
 
 double cos_deg(double degrees) {
     return std::cos(degrees * M_PI / 180.0);

@@ -1,16 +1,16 @@
 #include "host/layers/stack/quadrature.h"
-#include "host/layers/walk/walk_connector.h"
 #include "host/layers/walk/walk_estimate.h"
 #include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/henyey_greenstein.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
 #include "kernels/scatter/thin_film.h"
 #include "reradiant/error.h"
-#include "tests/full_run.h"
 #include "tests/layers/layer_values.h"
-#include "tests/layers/private_cache.h"
 #include "tests/layers/walk_stacks.h"
-#include "tests/layers/walk_statistics.h"
+#include "tests/support/full_run.h"
+#include "tests/support/private_cache.h"
+#include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
@@ -21,10 +21,10 @@ using namespace reradiant;
 
 namespace {
 
-const PrivateCache cache("walk");
+const test::PrivateCache cache("walk");
 
 std::uint64_t samples(std::uint64_t count) {
-    return is_full_run() ? 16 * count : count;
+    return test::is_full_run() ? 16 * count : count;
 }
 
 LayerStack dispersive_stack() {
@@ -43,10 +43,10 @@ WalkEstimate estimate(const LayerStack& stack, const kernels::Vec3& wi, const ke
 /// Compares three diffuse entries and the specular albedo.
 void expect_adding(const LayerStack& stack, double comparisons, std::uint64_t count,
                    std::uint64_t seed) {
-    const kernels::Vec3 wi = direction_deg(35, 0), wo = direction_deg(60, 70);
+    const kernels::Vec3 wi = test::direction_deg(35, 0), wo = test::direction_deg(60, 70);
     const WalkEstimate walk = estimate(stack, wi, wo, count, seed);
     const AddingValues adding = adding_values(stack, wi, wo);
-    const double bound = sidak_bound(comparisons);
+    const double bound = test::sidak_bound(comparisons);
     const auto compare = [&](double found, double error, double expected, const char* what) {
         // 0.15 %: cells of direction and the sampled tables of rough interfaces
         EXPECT_NEAR(found, expected, bound * error + 1.5e-3 * expected) << what << " " << seed;
@@ -102,8 +102,8 @@ TEST(Walk, Case29ReversedLightHasTheSameValue) {
         {{cloudy_layer(1.5, 0.2, 0.1, 1.0, 0.6), plain_layer(1.2, 0.3, 0.0)}},
         {{plain_layer(1.5, 0.4, 0.1, Scattering::Multiple, Distribution::Blinn)}},
     };
-    const kernels::Vec3 a = direction_deg(20, 0), b = direction_deg(65, 50);
-    const double bound = sidak_bound(5.0 * static_cast<double>(stacks.size()));
+    const kernels::Vec3 a = test::direction_deg(20, 0), b = test::direction_deg(65, 50);
+    const double bound = test::sidak_bound(5.0 * static_cast<double>(stacks.size()));
     for (std::size_t k = 0; k < stacks.size(); ++k) {
         const LayerWalk walk(stacks[k], {.matrix = bispectral_matrix()}, two_bands_nm);
         const WalkEstimate there = estimate_walk(walk, a, {&b, 1}, samples(40000), 2 * k);
@@ -126,7 +126,7 @@ TEST(Walk, Case29ReversedLightHasTheSameValue) {
 TEST(Walk, SamplesAreWhereEvalSaysThatLightGoes) {
     LayerStack stack{{cloudy_layer(1.5, 0.4, 0.1, 0.5, 0.3), plain_layer(1.3, 0.3, 0.0)}};
     const LayerWalk walk(stack, {.matrix = bispectral_matrix()}, two_bands_nm);
-    const kernels::Vec3 wi = direction_deg(50, 0);
+    const kernels::Vec3 wi = test::direction_deg(50, 0);
     constexpr int rings = 3, halves = 2, regions = rings * halves;
     const auto count = static_cast<int>(samples(60000));
     // flux by region and band of light that comes at 400 nm, and its squares
@@ -149,7 +149,7 @@ TEST(Walk, SamplesAreWhereEvalSaysThatLightGoes) {
         for (int k = 0; k < draws; ++k) {
             const double c = (region / halves + random.next()) / rings;
             const double phi = 180.0 * (random.next() - 0.5 + region % halves);
-            const kernels::Vec3 wo = direction_deg(std::acos(c) * 180.0 / M_PI, phi);
+            const kernels::Vec3 wo = test::direction_deg(std::acos(c) * 180.0 / M_PI, phi);
             WalkTally tally = walk.tally(1);
             walk.eval(wi, {&wo, 1}, 9, static_cast<std::uint64_t>(k), tally);
             for (const Eigen::Index band : {0, 1}) {
@@ -165,7 +165,7 @@ TEST(Walk, SamplesAreWhereEvalSaysThatLightGoes) {
             const double a = sampled[r][band], b = sum[band];
             const double error =
                 std::sqrt((squares[r][band] - a * a) / count + (square[band] - b * b) / draws);
-            EXPECT_NEAR(a, b, sidak_bound(2.0 * regions) * error) << region << " " << band;
+            EXPECT_NEAR(a, b, test::sidak_bound(2.0 * regions) * error) << region << " " << band;
             EXPECT_GT(a, 0.0);
         }
     }
@@ -189,13 +189,13 @@ TEST(Walk, WhiteStacksOfMultipleScatteringReflectEverything) {
                 const LayerWalk walk(stack, {.matrix = Eigen::MatrixXd::Identity(1, 1)}, {550.0});
                 for (const double theta : {0.0, 80.0}) {
                     const WalkEstimate found =
-                        estimate_walk(walk, direction_deg(theta, 0), {}, samples(2048), 5);
+                        estimate_walk(walk, test::direction_deg(theta, 0), {}, samples(2048), 5);
                     const double albedo =
                         found.mean.hemispherical.diffuse(0) + found.mean.hemispherical.specular(0);
                     // exact but for blinn, whose single scattering is weighted
                     const double tolerance =
                         distribution == Distribution::Blinn
-                            ? 5e-3 + sidak_bound(8) *
+                            ? 5e-3 + test::sidak_bound(8) *
                                          std::hypot(found.standard_error.hemispherical.diffuse(0),
                                                     found.standard_error.hemispherical.specular(0))
                             : 1e-12;
@@ -212,17 +212,18 @@ TEST(Walk, SingleScatteringLosesWhatIsKnown) {
     for (const auto& [alpha, loss] : {std::pair{0.1, 0.074}, {0.3, 0.296}, {0.6, 0.497}}) {
         const LayerWalk walk({{plain_layer(1.5, alpha, 0.0, Scattering::Single)}},
                              {.matrix = Eigen::MatrixXd::Identity(1, 1)}, {550.0});
-        const WalkEstimate found = estimate_walk(walk, direction_deg(0, 0), {}, samples(60000), 3);
+        const WalkEstimate found =
+            estimate_walk(walk, test::direction_deg(0, 0), {}, samples(60000), 3);
         const double albedo =
             found.mean.hemispherical.diffuse(0) + found.mean.hemispherical.specular(0);
         const double error = std::hypot(found.standard_error.hemispherical.diffuse(0),
                                         found.standard_error.hemispherical.specular(0));
-        EXPECT_NEAR(1.0 - albedo, loss, sidak_bound(3) * error + 1e-3) << alpha; // 3 digits
+        EXPECT_NEAR(1.0 - albedo, loss, test::sidak_bound(3) * error + 1e-3) << alpha; // 3 digits
     }
 }
 
 TEST(Walk, FilmsAndMetalsHaveTheirClosedForms) {
-    const kernels::Vec3 wi = direction_deg(40, 0), wo = direction_deg(50, 170);
+    const kernels::Vec3 wi = test::direction_deg(40, 0), wo = test::direction_deg(50, 170);
     LayerStack filmed{{plain_layer(1.5, 0.0, 0.0)}};
     filmed.layers[0].film = ThinFilm{320.0, Spectrum::constant(2.0)};
     const LayerWalk film(filmed, {.matrix = Eigen::MatrixXd::Zero(2, 2)}, two_bands_nm);
@@ -232,7 +233,7 @@ TEST(Walk, FilmsAndMetalsHaveTheirClosedForms) {
         const double expected = kernels::thin_film_reflectance(
             wi.z, 1.0, 2.0, 1.5, 0.0, 320.0, two_bands_nm[static_cast<std::size_t>(band)]);
         EXPECT_NEAR(mirrored.mean.hemispherical.specular(band), expected,
-                    sidak_bound(2) * mirrored.standard_error.hemispherical.specular(band));
+                    test::sidak_bound(2) * mirrored.standard_error.hemispherical.specular(band));
         EXPECT_EQ(mirrored.mean.delta(band), mirrored.mean.hemispherical.specular(band));
     }
     for (const Distribution distribution : {Distribution::Ggx, Distribution::Blinn}) {
@@ -255,22 +256,22 @@ TEST(Walk, SmoothFlakesReflectTheirShare) {
     LayerStack stack{{plain_layer(1.0, 0.0, 0.2)}};
     stack.layers[0].flakes = Flakes{0.4, metal};
     const LayerWalk walk(stack, {.matrix = Eigen::MatrixXd::Identity(1, 1)}, {550.0});
-    const kernels::Vec3 wi = direction_deg(30, 0), wo = direction_deg(45, 0);
+    const kernels::Vec3 wi = test::direction_deg(30, 0), wo = test::direction_deg(45, 0);
     const WalkEstimate found = estimate_walk(walk, wi, {&wo, 1}, samples(40000), 2);
     const double a = std::exp(-0.2 / wi.z), r = kernels::fresnel_conductor(wi.z, 0.3, 3.0);
     EXPECT_NEAR(found.mean.hemispherical.specular(0), 0.4 * r * a * a,
-                sidak_bound(2) * found.standard_error.hemispherical.specular(0));
+                test::sidak_bound(2) * found.standard_error.hemispherical.specular(0));
     // between the white substrate and the flakes' undersides
     const double back = 2.0 * integrate_sin2(0.0, 1.0, 64, [](double c) {
                             return c * 0.4 * kernels::fresnel_conductor(c, 0.3, 3.0);
                         });
     const double through = 0.6 * a * 0.6 * std::exp(-0.2 / wo.z);
     EXPECT_NEAR(found.mean.directional[0].diffuse(0), through / (std::numbers::pi * (1.0 - back)),
-                sidak_bound(2) * found.standard_error.directional[0].diffuse(0));
+                test::sidak_bound(2) * found.standard_error.directional[0].diffuse(0));
 }
 
 TEST(Walk, OrenNayarIsItsFormulaAndSeesTheSlabsDirections) {
-    const kernels::Vec3 wi = direction_deg(60, 0), wo = direction_deg(70, 20);
+    const kernels::Vec3 wi = test::direction_deg(60, 0), wo = test::direction_deg(70, 20);
     const auto mean = [&](const LayerStack& stack) {
         const LayerWalk walk(stack, {.matrix = Eigen::MatrixXd::Constant(1, 1, 0.01), .sigma = 0.4},
                              {550.0});
@@ -293,7 +294,7 @@ TEST(Walk, OrenNayarIsItsFormulaAndSeesTheSlabsDirections) {
 }
 
 TEST(Walk, EstimatesDoNotDependOnThreads) {
-    const kernels::Vec3 wi = direction_deg(35, 0), wo = direction_deg(60, 70);
+    const kernels::Vec3 wi = test::direction_deg(35, 0), wo = test::direction_deg(60, 70);
     const LayerStack stack = dispersive_stack();
     WalkEstimate one, two;
     tbb::task_arena(1).execute([&] { one = estimate(stack, wi, wo, 2000, 7); });
@@ -311,16 +312,17 @@ TEST(Walk, Case12HenyeyGreensteinKeepsItsMeanCosine) {
         const int count = 20000;
         double sum = 0.0, squares = 0.0;
         for (int k = 0; k < count; ++k) {
-            const double mu = kernels::vec3_dot(d, sample_henyey_greenstein(g, d, random));
+            const double u1 = random.next(), u2 = random.next();
+            const double mu = kernels::vec3_dot(d, kernels::henyey_greenstein_sample(d, g, u1, u2));
             sum += mu;
             squares += mu * mu;
         }
         const double mean = sum / count;
         const double error = std::sqrt((squares / count - mean * mean) / count);
-        EXPECT_NEAR(mean, g, sidak_bound(7) * error) << g;
-        EXPECT_TRUE(std::isfinite(henyey_greenstein(g, 1.0)));
+        EXPECT_NEAR(mean, g, test::sidak_bound(7) * error) << g;
+        EXPECT_TRUE(std::isfinite(kernels::henyey_greenstein_phase(g, 1.0)));
     }
-    EXPECT_NEAR(henyey_greenstein(0.9999, 1.0), 1.9999e8 / (4.0 * M_PI * 1.0), 1.0);
+    EXPECT_NEAR(kernels::henyey_greenstein_phase(0.9999, 1.0), 1.9999e8 / (4.0 * M_PI * 1.0), 1.0);
 }
 
 TEST(Walk, WhatCannotBeIsRefused) {
@@ -336,5 +338,5 @@ TEST(Walk, WhatCannotBeIsRefused) {
     refused({}, {.matrix = -bispectral_matrix()});
     const LayerWalk walk({}, good, two_bands_nm);
     WalkTally tally = walk.tally(0);
-    EXPECT_THROW(walk.eval(direction_deg(100, 0), {}, 0, 0, tally), std::invalid_argument);
+    EXPECT_THROW(walk.eval(test::direction_deg(100, 0), {}, 0, 0, tally), std::invalid_argument);
 }

@@ -1,7 +1,7 @@
 #include "host/layers/walk/walk_surface.h"
-#include "tests/full_run.h"
 #include "tests/layers/layer_values.h"
-#include "tests/layers/walk_statistics.h"
+#include "tests/support/full_run.h"
+#include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -93,10 +93,10 @@ std::vector<WalkSurface> surfaces() {
 } // namespace
 
 TEST(WalkSurface, ValuesAreWhatIsSampled) {
-    const int count = is_full_run() ? 200000 : 8000;
+    const int count = test::is_full_run() ? 200000 : 8000;
     const std::vector<WalkSurface> all = surfaces();
     // at 8000 draws a region that holds a tenth of the flux is known to some 5 %
-    const double bound = sidak_bound(static_cast<double>(all.size()) * 2 * 2 * regions);
+    const double bound = test::sidak_bound(static_cast<double>(all.size()) * 2 * 2 * regions);
     for (std::size_t k = 0; k < all.size(); ++k) {
         for (const bool from_below : {false, true}) {
             for (const double theta : {0.4, 1.2}) {
@@ -136,7 +136,8 @@ TEST(WalkSurface, RefractionHasTheSameValueBothWaysOverTheSquareOfTheIndex) {
             }
             EXPECT_GT(down.value(count), 0.05);
             EXPECT_NEAR(down.value(count), up.value(count),
-                        sidak_bound(6) * std::sqrt(down.error2(count) + up.error2(count)) + 1e-12);
+                        test::sidak_bound(6) * std::sqrt(down.error2(count) + up.error2(count)) +
+                            1e-12);
         }
     }
 }

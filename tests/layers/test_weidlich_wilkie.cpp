@@ -1,5 +1,6 @@
 #include "host/layers/models/weidlich_wilkie.h"
 #include "tests/layers/layer_values.h"
+#include "tests/support/directions.h"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +11,6 @@ using namespace reradiant;
 using kernels::Vec3;
 
 namespace {
-
-Vec3 direction(double degrees, double phi_degrees) {
-    const double t = degrees * M_PI / 180.0, p = phi_degrees * M_PI / 180.0;
-    return kernels::vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
-}
 
 double fresnel(double c, double n) {
     const double t = std::sqrt(1.0 - (1.0 - c * c) / (n * n));
@@ -27,7 +23,7 @@ double fresnel(double c, double n) {
 TEST(WeidlichWilkie, SmoothLayerIsTwoFresnelPassagesAndBeerLambert) {
     const StackElements stack =
         stack_of({{1.5, Distribution::Blinn, 0.0, Scattering::Single, 0.3}});
-    const Vec3 wi = direction(45, 0), wo = direction(20, 130);
+    const Vec3 wi = test::direction_deg(45, 0), wo = test::direction_deg(20, 130);
     const double ci = std::sqrt(1 - 0.5 / 2.25), s = std::sin(20 * M_PI / 180);
     const double co = std::sqrt(1 - s * s / 2.25);
     EXPECT_NEAR(WeidlichWilkie::way_in(stack, wi, wo),
@@ -43,7 +39,7 @@ TEST(WeidlichWilkie, RoughLayerFollowsTheSeedsShader) {
     const double alpha = 0.4, exponent = blinn_exponent(alpha);
     const StackElements stack =
         stack_of({{1.5, Distribution::Blinn, alpha, Scattering::Single, 0.0}});
-    const Vec3 wi = direction(60, 0), wo = direction(75, 150);
+    const Vec3 wi = test::direction_deg(60, 0), wo = test::direction_deg(75, 150);
     const double hx = wi.x + wo.x, hy = wi.y + wo.y, hz = wi.z + wo.z;
     const double length = std::sqrt(hx * hx + hy * hy + hz * hz);
     const double ndoth = hz / length, vdoth = (wi.x * hx + wi.y * hy + wi.z * hz) / length;
@@ -68,7 +64,10 @@ TEST(WeidlichWilkie, LowerInterfacesAreSeenThroughTheUpperOnes) {
 TEST(WeidlichWilkie, TotalReflectionLetsNothingThrough) {
     const StackElements stack =
         stack_of({{0.5, Distribution::Blinn, 0.0, Scattering::Single, 0.1}});
-    EXPECT_EQ(WeidlichWilkie::way_in(stack, direction(60, 0), direction(10, 0)), 0.0);
-    EXPECT_EQ(WeidlichWilkie::way_out(stack, direction(10, 0), direction(60, 0)), 0.0);
+    EXPECT_EQ(WeidlichWilkie::way_in(stack, test::direction_deg(60, 0), test::direction_deg(10, 0)),
+              0.0);
+    EXPECT_EQ(
+        WeidlichWilkie::way_out(stack, test::direction_deg(10, 0), test::direction_deg(60, 0)),
+        0.0);
     EXPECT_EQ(WeidlichWilkie::specular_delta(stack, std::cos(60 * M_PI / 180)), 1.0);
 }

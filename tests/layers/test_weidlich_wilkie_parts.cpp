@@ -4,7 +4,8 @@
 #include "host/layers/rough/facet_reflectance.h"
 #include "host/layers/walk/walk_estimate.h"
 #include "tests/layers/layer_values.h"
-#include "tests/layers/private_cache.h"
+#include "tests/support/directions.h"
+#include "tests/support/private_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -16,12 +17,8 @@ using kernels::Vec3;
 
 namespace {
 
-const PrivateCache cache("weidlich-wilkie-parts");
+const test::PrivateCache cache("weidlich-wilkie-parts");
 
-Vec3 direction(double degrees, double phi_degrees) {
-    const double t = degrees * M_PI / 180.0, p = phi_degrees * M_PI / 180.0;
-    return kernels::vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
-}
 double cos_deg(double degrees) {
     return std::cos(degrees * M_PI / 180.0);
 }
@@ -62,7 +59,7 @@ double albedo(const Function& f, const Vec3& wi) {
     for (int i = 0; i < rings; ++i) {
         for (int k = 0; k < sectors; ++k) {
             const double theta = 90.0 * (i + 0.5) / rings;
-            const Vec3 h = direction(theta, 360.0 * (k + 0.5) / sectors);
+            const Vec3 h = test::direction_deg(theta, 360.0 * (k + 0.5) / sectors);
             const double c = kernels::vec3_dot(wi, h);
             const Vec3 wo = kernels::vec3_sub(kernels::vec3_scale(h, 2.0 * c), wi);
             if (c > 0.0 && wo.z > 0.0)
@@ -75,7 +72,7 @@ double albedo(const Function& f, const Vec3& wi) {
 } // namespace
 
 TEST(WeidlichWilkieParts, Case17BareConductorIsTorranceAndSparrow) {
-    const Vec3 wi = direction(50, 0), wo = direction(35, 150);
+    const Vec3 wi = test::direction_deg(50, 0), wo = test::direction_deg(35, 150);
     const Vec3 sum = kernels::vec3_add(wi, wo);
     const double length = std::sqrt(kernels::vec3_dot(sum, sum));
     const double cos_h = sum.z / length, vdoth = kernels::vec3_dot(wi, sum) / length;
@@ -101,8 +98,8 @@ TEST(WeidlichWilkieParts, Case17SmoothConductorUnderASmoothLayerIsTwoMirrors) {
         EXPECT_NEAR(WeidlichWilkie::specular_delta(stack_of({slab(n, tau)}), c), fresnel(c, n),
                     1e-12);
     }
-    EXPECT_EQ(WeidlichWilkie::conductor(stack_of({}, smoothed(gold)), direction(20, 0),
-                                        direction(20, 180)),
+    EXPECT_EQ(WeidlichWilkie::conductor(stack_of({}, smoothed(gold)), test::direction_deg(20, 0),
+                                        test::direction_deg(20, 180)),
               0.0);
 }
 
@@ -113,7 +110,7 @@ TEST(WeidlichWilkieParts, FilmOfNoThicknessIsNone) {
     SurfaceValues coated = gold;
     coated.film = {0.0, 1.3};
     coated.wavelength_nm = 500.0;
-    const Vec3 wi = direction(30, 0), wo = direction(55, 100);
+    const Vec3 wi = test::direction_deg(30, 0), wo = test::direction_deg(55, 100);
     EXPECT_EQ(WeidlichWilkie::specular(stack_of({film}), wi, wo),
               WeidlichWilkie::specular(stack_of({bare}), wi, wo));
     EXPECT_EQ(WeidlichWilkie::way_in(stack_of({film}), wi, wo),
@@ -129,7 +126,7 @@ TEST(WeidlichWilkieParts, QuarterWaveFilmIsTheKnownCoating) {
     // (n - nf^2)^2 / (n + nf^2)^2, textbook
     const double r = std::pow((1.52 - 1.38 * 1.38) / (1.52 + 1.38 * 1.38), 2);
     EXPECT_NEAR(WeidlichWilkie::specular_delta(stack_of({glass}), 1.0), r, 1e-12);
-    const Vec3 up = direction(0, 0);
+    const Vec3 up = test::direction_deg(0, 0);
     EXPECT_NEAR(WeidlichWilkie::way_in(stack_of({glass}), up, up), 1.0 - r, 1e-12);
     EXPECT_NEAR(WeidlichWilkie::way_out(stack_of({glass}), up, up), 1.0 - r, 1e-12);
 }
@@ -138,7 +135,7 @@ TEST(WeidlichWilkieParts, FlakesReflectTheirShareAndLetTheRestPass) {
     LayerValues paint = slab(1.5, 0.1);
     paint.flake_coverage = 0.3;
     paint.flakes = gold;
-    const Vec3 wi = direction(25, 0), wo = direction(40, 170);
+    const Vec3 wi = test::direction_deg(25, 0), wo = test::direction_deg(40, 170);
     const double as_substrate = WeidlichWilkie::conductor(stack_of({slab(1.5, 0.1)}, gold), wi, wo);
     EXPECT_NEAR(WeidlichWilkie::specular(stack_of({paint}), wi, wo), 0.3 * as_substrate, 1e-12);
     EXPECT_NEAR(WeidlichWilkie::way_in(stack_of({paint}), wi, wo),
@@ -152,7 +149,7 @@ TEST(WeidlichWilkieParts, FlakesReflectTheirShareAndLetTheRestPass) {
 
 TEST(WeidlichWilkieParts, MatchedSlabScattersOnceAsHanrahanAndKrueger) {
     const double g = 0.6, tau = 0.4, own = 0.3;
-    const Vec3 wi = direction(35, 0), wo = direction(60, 110);
+    const Vec3 wi = test::direction_deg(35, 0), wo = test::direction_deg(60, 110);
     const double mu = -kernels::vec3_dot(wi, wo);
     const double phase = (1 - g * g) / (4 * M_PI * std::pow(1 + g * g - 2 * g * mu, 1.5));
     const double depth = tau + own;
@@ -167,13 +164,13 @@ TEST(WeidlichWilkieParts, MatchedSlabScattersOnceAsHanrahanAndKrueger) {
     const StackElements film = stack_of({slab(1.0, 0.0, thin)});
     const double up =
         albedo([&](const Vec3& i, const Vec3& o) { return WeidlichWilkie::specular(film, i, o); },
-               direction(20, 0));
+               test::direction_deg(20, 0));
     EXPECT_NEAR(up / (0.5 * thin / cos_deg(20)), 1.0, 2e-3); // midpoint rule
 }
 
 TEST(WeidlichWilkieParts, OrenNayarActsAtTheRefractedDirections) {
     const double sigma = 0.5, n = 1.5;
-    const Vec3 wi = direction(50, 0), wo = direction(70, 30);
+    const Vec3 wi = test::direction_deg(50, 0), wo = test::direction_deg(70, 30);
     const double si = std::sin(50 * M_PI / 180) / n, so = std::sin(70 * M_PI / 180) / n;
     const double a = 1 - 0.5 * 0.25 / (0.25 + 0.33), b = 0.45 * 0.25 / (0.25 + 0.09);
     const double expected = a + b * cos_deg(30) * so * si / std::sqrt(1 - si * si);
@@ -191,7 +188,7 @@ TEST(WeidlichWilkieParts, Case29IsReciprocal) {
     const StackValues layers{paint, rough(1.3, 0.4)};
     const StackElements stack = stack_of(layers);
     const WeidlichWilkieResidual residual(stack_of(layers, perfect));
-    const Vec3 wi = direction(65, 0), wo = direction(15, 80);
+    const Vec3 wi = test::direction_deg(65, 0), wo = test::direction_deg(15, 80);
     const auto both = [&](const auto& f) { EXPECT_NEAR(f(wi, wo) / f(wo, wi), 1.0, 1e-12); };
     both([&](const Vec3& i, const Vec3& o) { return WeidlichWilkie::specular(stack, i, o); });
     both([&](const Vec3& i, const Vec3& o) {
@@ -207,7 +204,7 @@ TEST(WeidlichWilkieParts, MultipleScatteringOfARoughInterfaceFollowsItsOperator)
             const auto operator_of = adding_transport(stack);
             const WeidlichWilkieResidual residual(stack);
             for (const double theta : {0.0, 45.0, 70.0}) {
-                const Vec3 wi = direction(theta, 0);
+                const Vec3 wi = test::direction_deg(theta, 0);
                 const double lobe =
                     albedo([&](const Vec3& i,
                                const Vec3& o) { return WeidlichWilkie::specular(stack, i, o); },
@@ -230,7 +227,7 @@ TEST(WeidlichWilkieParts, PerfectRoughConductorReflectsEverything) {
         const StackElements stack = stack_of({}, mirror);
         const WeidlichWilkieResidual residual(stack);
         for (const double theta : {0.0, 45.0, 75.0}) {
-            const Vec3 wi = direction(theta, 0);
+            const Vec3 wi = test::direction_deg(theta, 0);
             const double lobe =
                 albedo([&](const Vec3& i,
                            const Vec3& o) { return WeidlichWilkie::conductor(stack, i, o); },
@@ -251,7 +248,7 @@ TEST(WeidlichWilkieParts, RoughMetalReflectsWhatTheWalkBetweenItsFacetsSays) {
         substrate.conductor = {metal};
         const LayerWalk walk({}, substrate, {550.0});
         for (const double theta : {0.0, 60.0}) {
-            const Vec3 wi = direction(theta, 0);
+            const Vec3 wi = test::direction_deg(theta, 0);
             const double lobe =
                 albedo([&](const Vec3& i,
                            const Vec3& o) { return WeidlichWilkie::conductor(stack, i, o); },

@@ -3,7 +3,8 @@
 #include "host/layers/models/effective_matrix.h"
 #include "host/layers/stack/quadrature.h"
 #include "host/layers/walk/walk_estimate.h"
-#include "reradiant/adding.h"
+#include "reradiant/stack_model.h"
+#include "tests/support/directions.h"
 
 #include <cmath>
 #include <numbers>
@@ -11,11 +12,6 @@
 
 /// Stacks and what adding says of them, for comparisons with the walk.
 namespace reradiant {
-
-inline kernels::Vec3 direction_deg(double theta_deg, double phi_deg) {
-    const double t = theta_deg * std::numbers::pi / 180, p = phi_deg * std::numbers::pi / 180;
-    return kernels::vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
-}
 
 inline Layer plain_layer(double ior, double alpha, double tau,
                          Scattering scattering = Scattering::Multiple,

@@ -8,9 +8,10 @@
 #include "host/scene/model/closed_model.h"
 #include "reradiant/error.h"
 #include "reradiant/measure.h"
-#include "tests/full_run.h"
 #include "tests/layers/layer_values.h"
-#include "tests/layers/private_cache.h"
+#include "tests/support/full_run.h"
+#include "tests/support/private_cache.h"
+#include "tests/support/statistics.h"
 
 #include <Eigen/Core>
 #include <fmt/core.h>
@@ -25,7 +26,7 @@ using kernels::Vec3;
 
 namespace {
 
-const PrivateCache cache("layered-bsdf");
+const test::PrivateCache cache("layered-bsdf");
 const WavelengthGrid one{550, 10, 1};
 
 Vec3 at_degrees(double theta) {
@@ -50,17 +51,6 @@ SubstrateValues metal(double alpha, Distribution distribution = Distribution::Gg
     SubstrateValues substrate;
     substrate.conductor = {conductor_values(0.3, 3.0, distribution, alpha)};
     return substrate;
-}
-
-/// Two-sided bound in standard deviations for n comparisons at a family-wise rate of 1e-6 (Sidak).
-double sidak_sigmas(int comparisons) {
-    const double each = -std::expm1(std::log1p(-1e-6) / comparisons);
-    double low = 0.0, high = 40.0;
-    for (int step = 0; step < 60; ++step) {
-        const double middle = 0.5 * (low + high);
-        (std::erfc(middle / std::sqrt(2.0)) > each ? low : high) = middle;
-    }
-    return high;
 }
 
 /// Cells over the half vector: rings that follow a lobe of width alpha and go on to the horizon.
@@ -135,8 +125,8 @@ std::vector<double> found_cells(const LayeredBsdf& drawn, const LayeredBsdf& cla
 }
 
 /// Returns how far the directions that `drawn` samples are from what the pdf of `claimed` says, in
-/// standard deviations of a chi-square above its mean (Wilson and Hilferty 1931); infinite for a
-/// direction where the pdf is 0. Cells that expect less than 10 are taken together. `jacobian` is a
+/// standard deviations of a chi-square above its mean; infinite for a
+/// direction where the pdf is 0. `jacobian` is a
 /// factor that the pdf ought not to have.
 double chi_square_sigmas(const LayeredBsdf& drawn, const LayeredBsdf& claimed, double theta,
                          double alpha, int count, double jacobian = 1.0) {
@@ -146,25 +136,10 @@ double chi_square_sigmas(const LayeredBsdf& drawn, const LayeredBsdf& claimed, d
     if (seen.empty())
         return INFINITY;
     const std::vector<double> shares = cells.probabilities(claimed, w);
-    double chi = 0.0, rare_seen = 0.0, rare_wanted = 0.0;
-    int degrees = 0;
-    const auto add = [&](double found, double wanted) {
-        chi += (found - wanted) * (found - wanted) / wanted;
-        ++degrees;
-    };
-    for (std::size_t cell = 0; cell < shares.size(); ++cell) {
-        const double wanted = jacobian * shares[cell] * count;
-        if (wanted >= 10.0) {
-            add(seen[cell], wanted);
-        } else {
-            rare_seen += seen[cell];
-            rare_wanted += wanted;
-        }
-    }
-    if (rare_wanted > 0.0)
-        add(rare_seen, std::max(rare_wanted, 10.0));
-    const double k = 2.0 / (9.0 * degrees);
-    return (std::cbrt(chi / degrees) - (1.0 - k)) / std::sqrt(k);
+    std::vector<double> expected;
+    for (const double share : shares)
+        expected.push_back(jacobian * share * count);
+    return test::chi_square_sigmas(seen, expected, false);
 }
 
 struct Case {
@@ -222,9 +197,9 @@ std::array<double, 2> sampled_albedo(const LayeredBsdf& bsdf, double theta, int 
 
 TEST(LayeredBsdf, SamplesFollowTheirPdf) {
     // 4 % of a lobe's width are seen in a normal run, 1.3 % in a full one
-    const int count = is_full_run() ? 500000 : 50000;
+    const int count = test::is_full_run() ? 500000 : 50000;
     const std::vector<Case> cases = sampling_cases();
-    const double bound = sidak_sigmas(static_cast<int>(cases.size()) * 4);
+    const double bound = test::sidak_bound(static_cast<int>(cases.size()) * 4);
     for (const Case& one_case : cases) {
         for (const double theta : {0.0, 45.0, 75.0, 89.0}) {
             EXPECT_LT(chi_square_sigmas(one_case.bsdf, one_case.bsdf, theta, one_case.alpha, count),
@@ -237,7 +212,7 @@ TEST(LayeredBsdf, SamplesFollowTheirPdf) {
 TEST(LayeredBsdf, AWidthOrAJacobianThatIsOnePercentOffFailsTheTest) {
     const LayeredBsdf right({}, metal(0.2), one, weidlich_wilkie_bsdf);
     const LayeredBsdf wrong({}, metal(0.202), one, weidlich_wilkie_bsdf);
-    const double bound = sidak_sigmas(1);
+    const double bound = test::sidak_bound(1);
     const int count = 3000000;
     EXPECT_LT(chi_square_sigmas(right, right, 45.0, 0.2, count), bound);
     EXPECT_GT(chi_square_sigmas(wrong, right, 45.0, 0.2, count), bound);
@@ -267,7 +242,7 @@ TEST(LayeredBsdf, SampledAlbedoIsTheHemisphericalMeasure) {
         {{{layer(1.5, 0.05, Distribution::Blinn)}}, metal(0.0), Model::WeidlichWilkie},
         {{{layer(1.4, 0.2, Distribution::Beckmann)}}, metal(0.3), Model::WeidlichWilkie},
     };
-    const double bound = sidak_sigmas(static_cast<int>(materials.size()) * 3);
+    const double bound = test::sidak_bound(static_cast<int>(materials.size()) * 3);
     for (std::size_t k = 0; k < materials.size(); ++k) {
         const auto& [stack, substrate, model] = materials[k];
         const LayeredBsdf bsdf(stack, substrate, one, closed_model(model));
@@ -277,7 +252,8 @@ TEST(LayeredBsdf, SampledAlbedoIsTheHemisphericalMeasure) {
         for (const double theta : {0.0, 50.0, 85.0}) {
             request.theta_i_deg = {theta};
             const auto rows = measure_substrate(stack, substrate, one, request).rows;
-            const auto [mean, error] = sampled_albedo(bsdf, theta, is_full_run() ? 1000000 : 20000);
+            const auto [mean, error] =
+                sampled_albedo(bsdf, theta, test::is_full_run() ? 1000000 : 20000);
             // 1e-4 for the quadrature of the measure, 1e-3 for the lobes' fits in adding
             const double margin = model == Model::Adding ? 1e-3 : 1e-4;
             EXPECT_NEAR(mean, rows.at(0).value + rows.at(1).value, bound * error + margin)

@@ -6,7 +6,7 @@
 #include "reradiant/error.h"
 #include "reradiant/measure.h"
 #include "tests/layers/layer_values.h"
-#include "tests/layers/private_cache.h"
+#include "tests/support/private_cache.h"
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using kernels::Vec3;
 
 namespace {
 
-const PrivateCache cache("measure-materials");
+const test::PrivateCache cache("measure-materials");
 const WavelengthGrid one{550, 10, 1};
 
 double cos_deg(double degrees) {

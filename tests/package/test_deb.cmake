@@ -8,12 +8,12 @@ run(fields dpkg-deb --field ${package})
 expect("${fields}" "Package: reradiant\n")
 expect("${fields}" "Depends: [^\n]*opencl-icd")
 run(files dpkg-deb --contents ${package})
-foreach(file /usr/bin/reradiant libreradiant.so. /usr/include/reradiant/host/error.h
+foreach(file /usr/bin/reradiant libreradiant.so. /usr/include/reradiant/error.h
              /reradiantConfig.cmake /reradiant.pc /usr/share/reradiant/kernels/gather.cl
              /usr/share/reradiant/spectra/illuminants/D65.csv)
   expect("${files}" "${file}")
 endforeach()
-if(files MATCHES "/debian/|_library")
+if(files MATCHES "/debian/|_library|include/[^\n]*(host|kernels)/")
   message(FATAL_ERROR "the package holds what it should not:\n${files}")
 endif()
 

@@ -69,8 +69,9 @@ private:
             result.conductor.kappa = Spectrum::constant(edge_or_between({1e-6, 0.5, 3.0, 10.0}));
             result.conductor.alpha = chance(0.5) ? 0.0 : pooled(256, {0.001, 0.02, 0.3, 1.0});
         } else if (type == 2) {
-            result.matrix = shifted_matrix();
-            result.matrix->values *= uniform(0.0, 1.0);
+            ReradiationMatrix matrix = shifted_matrix();
+            matrix.values *= uniform(0.0, 1.0);
+            result.matrix = std::make_shared<const ReradiationMatrix>(matrix);
             result.reflectance = result.matrix->reflectance();
         }
     }

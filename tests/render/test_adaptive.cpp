@@ -1,7 +1,7 @@
 // Adaptive sampling: where the samples go, that the image stays right, and what it gains.
 #include "host/render/wavefront/adaptive.h"
-#include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -130,9 +130,9 @@ TEST(Adaptive, TakesAsManySamplesOnTheAverageAndHasLessError) {
 /// against many samples, in cells of four pixels and as a whole, in standard errors between
 /// renders; what is rarer than a millionth of the image need not have been seen.
 TEST(Adaptive, ImagesHaveNoBiasThatCanBeSeen) {
-    const std::uint32_t renders = is_full_run() ? 4000 : 60;
+    const std::uint32_t renders = test::is_full_run() ? 4000 : 60;
     const SpectralImage reference =
-        rendered(is_full_run() ? 1u << 18 : 1u << 13, 1000, false).image;
+        rendered(test::is_full_run() ? 1u << 18 : 1u << 13, 1000, false).image;
     const std::size_t entries = reference.values.size();
     std::vector<double> sums(entries / 16), squares(sums.size()), truth(sums.size());
     for (std::size_t i = 0; i < entries; ++i)
@@ -155,13 +155,13 @@ TEST(Adaptive, ImagesHaveNoBiasThatCanBeSeen) {
     const auto check = [&](double sum, double sum_of_squares, double expected, double sigmas,
                            const std::string& what) {
         const double n = renders, mean = sum / n;
-        const double tolerance = is_full_run() ? 5e-4 : 3e-3; // relative to the reference
+        const double tolerance = test::is_full_run() ? 5e-4 : 3e-3; // relative to the reference
         const double error = std::sqrt(std::max(0.0, sum_of_squares / n - mean * mean) / (n - 1));
         EXPECT_NEAR(mean, expected, sigmas * error + tolerance * expected + 1e-6 * whole) << what;
         return (mean - expected) / expected;
     };
     for (std::size_t c = 0; c < sums.size(); ++c)
-        check(sums[c], squares[c], truth[c], sidak_sigmas(static_cast<int>(sums.size())),
+        check(sums[c], squares[c], truth[c], test::sidak_bound(static_cast<int>(sums.size())),
               "cell " + std::to_string(c));
     const double bias = check(total, total_squares, whole, 5.0, "whole image");
     RecordProperty("relative_bias", std::to_string(bias));

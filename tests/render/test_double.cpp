@@ -1,7 +1,7 @@
 // Kernels in double precision against those in single: the same samples, so that what differs is
 // what single precision costs.
-#include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ TEST(InDouble, ImagesDifferByRoundingAlone) {
         GTEST_SKIP() << "the device has no double precision";
     const Material coated = fluorescent({layer(1.5, 0.2, 0.3)}, shifted_matrix());
     std::vector<Model> models = {Model::Adding}; // two sets of programs each
-    if (is_full_run())
+    if (test::is_full_run())
         models.insert(models.end(), {Model::WeidlichWilkie, Model::Walk});
     for (const Model model : models) {
         const RenderResult single = rendered(coated, model, false);

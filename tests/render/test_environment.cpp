@@ -54,7 +54,7 @@ TEST(EnvironmentImage, ConstantImageIsTheConstantEnvironment) {
             const BandStatistics a = band_statistics(constant.image, band);
             const BandStatistics b = band_statistics(image.image, band);
             EXPECT_NEAR(a.mean, b.mean,
-                        sidak_sigmas(3 * bands.count) *
+                        test::sidak_bound(3 * bands.count) *
                                 std::hypot(a.standard_error, b.standard_error) +
                             1e-5);
         }
@@ -128,7 +128,7 @@ TEST(EnvironmentImage, SunInATexelIsSampledAndLightsByItsSolidAngle) {
     for (int band = 0; band < bands.count; ++band) {
         const BandStatistics found = band_statistics(result.image, band);
         const double expected = irradiance / pi;
-        EXPECT_NEAR(found.mean, expected, sidak_sigmas(bands.count) * found.standard_error);
+        EXPECT_NEAR(found.mean, expected, test::sidak_bound(bands.count) * found.standard_error);
         // 4096 samples of a density that is constant on a texel under a hat: 0.7 / 64 at most.
         // Found by chance alone the texel would leave an error above the value itself.
         EXPECT_LT(found.standard_error, 0.02 * expected);

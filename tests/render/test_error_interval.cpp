@@ -1,5 +1,5 @@
-#include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -71,9 +71,9 @@ double covered_share(const Scene& scene, const SpectralImage& reference, std::ui
 /// scatters by 2.8 %: Sidak's bound of one comparison is allowed beyond, which still fails an
 /// interval that is half as wide (67 %). The reference adds its own error, 1 % of the renders'.
 void expect_covered(const Scene& scene) {
-    const bool full = is_full_run();
+    const bool full = test::is_full_run();
     const int renders = full ? 1000 : 60;
-    const double slack = full ? 0.0 : sidak_sigmas(1) * std::sqrt(0.95 * 0.05 / renders);
+    const double slack = full ? 0.0 : test::sidak_bound(1) * std::sqrt(0.95 * 0.05 / renders);
     const SpectralImage reference = rendered(scene, full ? 8192 : 3200, 100000).image;
     for (const std::uint32_t samples : full ? std::vector{8u, 32u, 80u} : std::vector{32u}) {
         const double share = covered_share(scene, reference, samples, renders);

@@ -51,8 +51,9 @@ TEST(FilmSums, ErrorFallsAsTheInverseSquareRootOfSamples) {
         double error = 0.0;
         for (std::uint32_t seed = 0; seed < 8; ++seed)
             error += compare_images(rendered(samples, seed).image, reference.image).rmse / 8.0;
-        if (previous > 0.0)
+        if (previous > 0.0) {
             EXPECT_NEAR(std::log(error / previous) / std::log(4.0), -0.5, 0.05);
+        }
         previous = error;
     }
 }

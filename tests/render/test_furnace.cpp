@@ -1,5 +1,5 @@
 #include "host/layers/models/effective_matrix.h"
-#include "reradiant/adding.h"
+#include "reradiant/stack_model.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ void expect_white(const Material& m, const char* what) {
     EXPECT_EQ(result.non_finite, 0u) << what;
     for (int band = 0; band < result.image.bands.count; ++band) {
         const BandStatistics found = band_statistics(result.image, band);
-        EXPECT_NEAR(found.mean, 1.0, 1e-3 + sidak_sigmas(41 * 8) * found.standard_error)
+        EXPECT_NEAR(found.mean, 1.0, 1e-3 + test::sidak_bound(41 * 8) * found.standard_error)
             << what << ", band " << band;
     }
 }
@@ -87,7 +87,7 @@ void expect_matrix_furnace(std::vector<Layer> layers, double view_deg, const cha
         const double expected =
             analytic_furnace(m, matrix.values, band, std::cos(view_deg * 3.14159265358979 / 180.0));
         EXPECT_NEAR(found.mean, expected,
-                    1e-3 * expected + sidak_sigmas(16 * 3) * found.standard_error)
+                    1e-3 * expected + test::sidak_bound(16 * 3) * found.standard_error)
             << what << ", band " << band;
     }
 }
@@ -115,7 +115,8 @@ TEST(Furnace, DenseAndFactoredMatrixAgree) {
         const BandStatistics found = band_statistics(result.image, band);
         const double expected =
             analytic_furnace(m, dense.values, band, std::cos(40.0 * 3.14159265358979 / 180.0));
-        EXPECT_NEAR(found.mean, expected, 1e-3 * expected + sidak_sigmas(16) * found.standard_error)
+        EXPECT_NEAR(found.mean, expected,
+                    1e-3 * expected + test::sidak_bound(16) * found.standard_error)
             << "band " << band;
     }
 }

@@ -1,8 +1,8 @@
 #include "reradiant/error.h"
 #include "reradiant/reradiation.h"
 #include "reradiant/scene_file.h"
-#include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -82,7 +82,7 @@ void expect_agreement(const Case& one, int hero, std::uint32_t samples) {
     ASSERT_EQ(comb.values.size(), difference.values.size());
     for (std::size_t i = 0; i < comb.values.size(); ++i)
         difference.values[i] -= comb.values[i];
-    const double bound = sidak_sigmas(comb.bands.count * 50);
+    const double bound = test::sidak_bound(comb.bands.count * 50);
     for (int band = 0; band < comb.bands.count; ++band) {
         const BandStatistics found = band_statistics(difference, band);
         // Single precision: sums of other order.
@@ -95,8 +95,8 @@ void expect_agreement(const Case& one, int hero, std::uint32_t samples) {
 
 TEST(Hero, AgreesWithTheCombInEveryBand) {
     for (const Case& one : cases()) {
-        expect_agreement(one, 4, is_full_run() ? 2048 : 128);
-        if (is_full_run())
+        expect_agreement(one, 4, test::is_full_run() ? 2048 : 128);
+        if (test::is_full_run())
             for (const int hero : {1, 7, 16})
                 expect_agreement(one, hero, 1024);
     }
@@ -141,7 +141,7 @@ TEST(Hero, WalkIsRefused) {
 
 /// The scenes that come with the program, small. The comb alone takes a second each.
 TEST(Hero, AgreesWithTheCombInTheExamples) {
-    if (!is_full_run())
+    if (!test::is_full_run())
         GTEST_SKIP() << "a full run renders every example scene";
     const std::filesystem::path folder =
         std::filesystem::path(RERADIANT_SOURCE_DIR) / "tools" / "examples";

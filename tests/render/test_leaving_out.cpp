@@ -4,9 +4,9 @@
 #include "host/device/program.h"
 #include "host/render/plan/render_features.h"
 #include "reradiant/reradiation.h"
-#include "tests/full_run.h"
 #include "tests/render/kernel_sizes.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -134,7 +134,7 @@ TEST(LeavingOut, EveryBitAddsCodeAndNoneLeavesAnyWhenOff) {
         EXPECT_GT(preprocessed_bytes(RERADIANT_SOURCE_DIR, with(on)),
                   preprocessed_bytes(RERADIANT_SOURCE_DIR, before))
             << name;
-        if (std::find(few.begin(), few.end(), name) == few.end() && !is_full_run())
+        if (std::find(few.begin(), few.end(), name) == few.end() && !test::is_full_run())
             continue;
         // The compiler may make a little less of more code, by what it then inlines (0.4 % less
         // with LLVM 18 for one bit): the program does not shrink by more than that.

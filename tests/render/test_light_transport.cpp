@@ -1,6 +1,6 @@
 #include "host/layers/models/effective_matrix.h"
 #include "host/layers/models/weidlich_wilkie.h"
-#include "reradiant/adding.h"
+#include "reradiant/stack_model.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -147,20 +147,20 @@ TEST(LightTransport, RectangleLightGivesItsFormFactor) {
         2.0 * x / std::sqrt(1 + x * x) * std::atan(x / std::sqrt(1 + x * x)) / (2.0 * pi);
     double error = 0.0;
     const double found = irradiance_of(light, 256, error);
-    EXPECT_NEAR(found, 4.0 * corner * pi, sidak_sigmas(3) * error + 1e-4);
+    EXPECT_NEAR(found, 4.0 * corner * pi, test::sidak_bound(3) * error + 1e-4);
 }
 
 TEST(LightTransport, SphereLightGivesTheSineSquared) {
     double error = 0.0;
     const double found =
         irradiance_of(SphereLight{{0, 3, 0}, 1.0, Spectrum::constant(1.0)}, 256, error);
-    EXPECT_NEAR(found, pi / 9.0, sidak_sigmas(3) * error + 1e-4);
+    EXPECT_NEAR(found, pi / 9.0, test::sidak_bound(3) * error + 1e-4);
 }
 
 TEST(LightTransport, PointLightFallsWithTheSquare) {
     double error = 0.0;
     const double found = irradiance_of(PointLight{{0, 2, 0}, Spectrum::constant(1.0)}, 16, error);
-    EXPECT_NEAR(found, 0.25, sidak_sigmas(3) * error + 1e-4);
+    EXPECT_NEAR(found, 0.25, test::sidak_bound(3) * error + 1e-4);
 }
 
 TEST(LightTransport, MirrorReflectionOfALightHasItsRadianceTimesFresnel) {
@@ -174,7 +174,7 @@ TEST(LightTransport, MirrorReflectionOfALightHasItsRadianceTimesFresnel) {
     options.samples = 256;
     const RenderResult result = render(scene, device(), options);
     const BandStatistics found = band_statistics(result.image, 0);
-    EXPECT_NEAR(found.mean, 3.0 * 0.04, sidak_sigmas(1) * found.standard_error + 1e-5);
+    EXPECT_NEAR(found.mean, 3.0 * 0.04, test::sidak_bound(1) * found.standard_error + 1e-5);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "reradiant/measure.h"
 #include "reradiant/reradiation.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/directions.h"
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>
@@ -16,10 +17,6 @@ namespace reradiant {
 namespace {
 
 using namespace test;
-
-double radians(double degrees) {
-    return degrees * std::numbers::pi / 180.0;
-}
 
 const WavelengthGrid bands = grid_from_range(450, 650, 50);
 
@@ -225,7 +222,7 @@ TEST(Materials, SmoothMetalsMirrorTheirSurroundings) {
             const double expected = front + metal_once / (1.0 - again);
             const BandStatistics found = band_statistics(result.image, band);
             EXPECT_NEAR(found.mean, expected,
-                        sidak_sigmas(2 * bands.count) * found.standard_error + 1e-4 * expected)
+                        test::sidak_bound(2 * bands.count) * found.standard_error + 1e-4 * expected)
                 << band;
         }
     }
@@ -250,7 +247,7 @@ void expect_furnace_as_measured(const char* what, const Material& m, double view
         const BandStatistics found = band_statistics(result.image, band);
         // 1e-3: the angular tables of rough stacks, as in the white furnace
         EXPECT_NEAR(found.mean, expected,
-                    sidak_sigmas(6 * bands.count) * found.standard_error + 1e-3 * expected)
+                    test::sidak_bound(6 * bands.count) * found.standard_error + 1e-3 * expected)
             << what << ", view " << view << ", band " << band;
     }
 }

@@ -38,7 +38,7 @@ BandStatistics returned_share(const SpectralImage& image, int strip) {
 TEST(Presets, NoneMakesEnergy) {
     const std::vector<Material> materials = presets();
     ASSERT_GE(materials.size(), 30u);
-    const std::vector<double> angles = is_full_run()
+    const std::vector<double> angles = test::is_full_run()
                                            ? std::vector<double>{0, 20, 40, 60, 75, 85, 89}
                                            : std::vector<double>{10, 75};
     for (const double angle : angles) {
@@ -47,13 +47,14 @@ TEST(Presets, NoneMakesEnergy) {
         scene.integrator.max_depth = 1;
         RenderOptions options;
         options.bands = grid_from_range(300, 780, 10);
-        options.samples = is_full_run() ? 256 : 32;
+        options.samples = test::is_full_run() ? 256 : 32;
         const RenderResult result = render(scene, device(), options);
         EXPECT_EQ(result.non_finite, 0u);
         for (std::size_t i = 0; i < materials.size(); ++i) {
             const BandStatistics share = returned_share(result.image, static_cast<int>(i));
             // tables of reflection by facets are good to 1e-3
-            EXPECT_LT(share.mean, 1.0 + 1e-3 + sidak_sigmas(comparisons) * share.standard_error)
+            EXPECT_LT(share.mean,
+                      1.0 + 1e-3 + test::sidak_bound(comparisons) * share.standard_error)
                 << materials[i].name << " at " << angle << " degrees, standard error "
                 << share.standard_error;
             EXPECT_GT(share.mean, 0.01) << materials[i].name;

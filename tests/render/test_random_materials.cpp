@@ -1,10 +1,11 @@
 // layer_stack's sample, pdf and values on the device, over tables of random materials: nothing but
 // finite numbers, none negative, no direction that its own pdf calls impossible.
 #include "host/device/buffer.h"
+#include "host/device/opencl_device.h"
 #include "host/device/program.h"
 #include "host/render/tables/scene_tables.h"
-#include "tests/full_run.h"
 #include "tests/render/random_materials.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -25,7 +26,6 @@ constexpr std::size_t directions = 64, inputs = 9, outputs = 6;
 /// z (0 for the mirror), its pdf, its length, 1 for the mirror.
 constexpr const char* source = R"(
 #include "kernels/stack/layer_stack.h"
-#include "host/device/opencl_device.h"
 __kernel void triple(__global const float* in, __global float* out, uint count,
                      __global const MaterialRecord* materials, __global const LayerRecord* layers,
                      __global const LobeRecord* lobes, __global const float* tables,
@@ -80,7 +80,8 @@ SceneTables random_tables(RandomMaterials& random, Model model, int count) {
     const WavelengthPlan plan = plan_wavelengths(scene, grid_from_range(450, 650, 100), options);
     while (static_cast<int>(tables.materials.size()) < count) {
         try {
-            append_material(random.material(), model, plan, lobes, tables);
+            const Material taken = random.material();
+            append_material(taken, plan_material(taken, {model, ""}, plan), plan, lobes, tables);
         } catch (const Error& error) {
             EXPECT_EQ(error.exit_code(), 2) << error.what();
         }
@@ -134,7 +135,7 @@ void expect_sound(const SceneTables& tables, RandomMaterials& random) {
 
 /// A million materials in a full run.
 TEST(RandomMaterials, SampleAndPdfOnTheDeviceStaySound) {
-    const int batches = is_full_run() ? 250 : 2, materials = is_full_run() ? 4000 : 150;
+    const int batches = test::is_full_run() ? 250 : 2, materials = test::is_full_run() ? 4000 : 150;
     tbb::parallel_for(0, batches, [&](int batch) {
         RandomMaterials random(static_cast<unsigned>(31 + batch), 1);
         const Model model = batch % 2 == 0 ? Model::WeidlichWilkie : Model::Auto;

@@ -1,7 +1,7 @@
 // Scenes of random materials: nothing that is not a number, nothing negative, and no energy from
 // nowhere. Programs are built with every feature on, so that they are built once.
-#include "tests/full_run.h"
 #include "tests/render/random_materials.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -60,8 +60,8 @@ std::optional<RenderResult> rendered(const Scene& scene, const RenderOptions& op
 }
 
 TEST(RandomScenes, HoldNoNanNoInfinityAndNothingNegative) {
-    const int count = is_full_run() ? 500 : 40;
-    RandomMaterials random(17, is_full_run() ? 60 : 1);
+    const int count = test::is_full_run() ? 500 : 40;
+    RandomMaterials random(17, test::is_full_run() ? 60 : 1);
     int done = 0;
     for (int i = 0; i < count; ++i) {
         const Scene scene = random_scene(random, random.material());
@@ -97,8 +97,8 @@ TEST(RandomScenes, WhiteFurnaceNeverShinesBrighterThanItsWalls) {
     // Radiance 1 from everywhere; what adding holds at one direction is at most 1 but for the
     // tables over angles (1e-3), Oren-Nayar's own excess (kernels/scatter/oren_nayar.h) and the
     // noise of sampling lobes, which the mean over 30 pixels of 64 samples has below 3 %.
-    const int count = is_full_run() ? 300 : 12;
-    RandomMaterials random(23, is_full_run() ? 60 : 1);
+    const int count = test::is_full_run() ? 300 : 12;
+    RandomMaterials random(23, test::is_full_run() ? 60 : 1);
     for (int i = 0; i < count; ++i) {
         Material material = random.material();
         material.substrate.matrix.reset();

@@ -1,7 +1,7 @@
 // Russian roulette ends paths that bring little, and must not cost more error than time.
 #include "reradiant/spectral_image.h"
-#include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ SpectralImage rendered(Scene scene, bool roulette, int samples, std::uint32_t se
 /// relMSE over that of the same samples without roulette, mean over seeds.
 double price_of_roulette(const Scene& scene) {
     constexpr int samples = 32;
-    const int seeds = is_full_run() ? 64 : 16;
+    const int seeds = test::is_full_run() ? 64 : 16;
     const SpectralImage reference = rendered(scene, false, 128 * samples, 1000);
     double with = 0.0, without = 0.0;
     for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(seeds); ++seed) {

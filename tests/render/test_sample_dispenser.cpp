@@ -34,8 +34,9 @@ TEST(SampleDispenser, HandsOutEverySampleOnceInEvenRangesThatShrink) {
     for (TeamTask task = dispenser.next({}); task.count > 0; task = dispenser.next(fast(task))) {
         EXPECT_EQ(task.first, end);
         end = task.first + task.count;
-        if (end < options.samples)
+        if (end < options.samples) {
             EXPECT_EQ(task.count % 2, 0u);
+        }
         largest = std::max(largest, task.count);
         last = task.count;
     }

@@ -2,8 +2,9 @@
 // get: chi-square over half vectors.
 #include "host/render/tables/scene_tables.h"
 #include "kernels/stack/layer_stack.h"
-#include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/directions.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -20,10 +21,6 @@ using kernels::LayerStackView;
 using kernels::Vec3;
 using kernels::vec3;
 
-double radians(double degrees) {
-    return degrees * std::numbers::pi / 180.0;
-}
-
 /// A material's tables, made for the number of deeper lobes that this program was compiled with.
 class Tabulated {
 public:
@@ -34,7 +31,7 @@ public:
         options.centred = true;
         const WavelengthPlan plan =
             plan_wavelengths(scene, grid_from_range(450, 650, 100), options);
-        append_material(material, model, plan, LOBES, tables_);
+        append_material(material, plan_material(material, {model, ""}, plan), plan, LOBES, tables_);
         const MaterialRecord& record = tables_.materials.front();
         view_ = {record, tables_.layers.data(), tables_.lobes.data(),
                  tables_.tables.data() + record.choice};
@@ -145,31 +142,12 @@ std::vector<double> expected(const LayerStackView& view, const Vec3& wo, double 
     return shares;
 }
 
-/// Standard deviations of a chi-square above its mean (Wilson and Hilferty 1931). Cells that expect
-/// less than 10 are taken together; a direction in cells of no probability counts as infinity.
-double chi_square_sigmas(const std::vector<double>& seen, const std::vector<double>& shares,
-                         int count) {
-    double chi = 0.0, rare_seen = 0.0, rare_expected = 0.0;
-    int degrees = -1;
-    const auto add = [&](double found, double wanted) {
-        chi += (found - wanted) * (found - wanted) / wanted;
-        ++degrees;
-    };
-    for (std::size_t cell = 0; cell < cells; ++cell) {
-        const double wanted = shares[cell] * count;
-        if (wanted >= 10.0) {
-            add(seen[cell], wanted);
-            continue;
-        }
-        rare_seen += seen[cell];
-        rare_expected += wanted;
-    }
-    if (rare_expected >= 10.0)
-        add(rare_seen, rare_expected);
-    else if (rare_seen > 60.0) // fewer than 10 are expected: less likely than 1e-20
-        return INFINITY;
-    const double k = 2.0 / (9.0 * degrees);
-    return (std::cbrt(chi / degrees) - (1.0 - k)) / std::sqrt(k);
+/// Returns how far counts are from their shares, in standard deviations of a chi-square.
+double share_sigmas(const std::vector<double>& seen, const std::vector<double>& shares, int count) {
+    std::vector<double> expected;
+    for (const double share : shares)
+        expected.push_back(share * count);
+    return chi_square_sigmas(seen, expected, true);
 }
 
 Conductor metal(double alpha) {
@@ -219,16 +197,16 @@ constexpr double thetas[] = {0.0, 30.0, 60.0, 85.0, 89.0};
 
 TEST(Sampling, DirectionsFollowThePdfOfEveryComponent) {
     // A width that is 1 % off shows at 2e6 samples (see the mutant), one that is 5 % off at 1e5.
-    const int count = is_full_run() ? 2000000 : 100000;
+    const int count = test::is_full_run() ? 2000000 : 100000;
     const std::vector<Case> cases = sampling_cases();
-    const double bound = sidak_sigmas(static_cast<int>(cases.size() * std::size(thetas)));
+    const double bound = test::sidak_bound(static_cast<int>(cases.size() * std::size(thetas)));
     for (const Case& one : cases) {
         const Tabulated tables(one.material, one.model);
         const double alpha = tables.narrowest();
         for (const double theta : thetas) {
             const Vec3 wo = vec3(std::sin(radians(theta)), 0.0, std::cos(radians(theta)));
-            const double sigmas = chi_square_sigmas(sampled(tables.view(), wo, alpha, count),
-                                                    expected(tables.view(), wo, alpha), count);
+            const double sigmas = share_sigmas(sampled(tables.view(), wo, alpha, count),
+                                               expected(tables.view(), wo, alpha), count);
             EXPECT_LT(sigmas, bound) << one.what << ", alpha " << alpha << ", theta " << theta;
         }
     }
@@ -242,10 +220,10 @@ TEST(Sampling, AWidthThatIsOnePercentOffFailsTheTest) {
     constexpr int count = 2000000;
     const Vec3 wo = vec3(0.6, 0.0, 0.8);
     const std::vector<double> shares = expected(right.view(), wo, 0.2);
-    EXPECT_LT(chi_square_sigmas(sampled(right.view(), wo, 0.2, count), shares, count),
-              sidak_sigmas(1));
-    EXPECT_GT(chi_square_sigmas(sampled(wrong.view(), wo, 0.2, count), shares, count),
-              sidak_sigmas(1));
+    EXPECT_LT(share_sigmas(sampled(right.view(), wo, 0.2, count), shares, count),
+              test::sidak_bound(1));
+    EXPECT_GT(share_sigmas(sampled(wrong.view(), wo, 0.2, count), shares, count),
+              test::sidak_bound(1));
 }
 
 TEST(Sampling, NoDirectionThatCarriesLightHasProbabilityZero) {

@@ -1,25 +1,11 @@
 #include "tests/render/test_scenes.h"
 
+#include "tests/support/directions.h"
+
 #include <cmath>
 #include <numbers>
 
 namespace reradiant::test {
-
-namespace {
-
-double radians(double degrees) {
-    return degrees * std::numbers::pi / 180.0;
-}
-
-} // namespace
-
-const Device& device() {
-    static const Device opened = [] {
-        prepare_opencl(0);
-        return Device("");
-    }();
-    return opened;
-}
 
 Scene plane_scene(const Material& material, double view_deg, int width, int height,
                   double fov_deg) {
@@ -111,16 +97,6 @@ BandStatistics band_statistics(const SpectralImage& image, int band) {
             squares += d * d;
         }
     return {mean, std::sqrt(squares / (n * (n - 1.0)))};
-}
-
-double sidak_sigmas(int comparisons) {
-    const double each = -std::expm1(std::log1p(-1e-6) / comparisons);
-    double low = 0.0, high = 40.0; // two-sided normal quantile by bisection
-    for (int i = 0; i < 200; ++i) {
-        const double middle = 0.5 * (low + high);
-        (std::erfc(middle / std::numbers::sqrt2) > each ? low : high) = middle;
-    }
-    return high;
 }
 
 } // namespace reradiant::test

@@ -1,14 +1,12 @@
 #pragma once
 
-#include "reradiant/device.h"
 #include "reradiant/render.h"
 #include "reradiant/reradiation.h"
 #include "reradiant/scene.h"
+#include "tests/support/first_device.h"
+#include "tests/support/statistics.h"
 
 namespace reradiant::test {
-
-/// The first OpenCL device, opened once.
-const Device& device();
 
 /// A plane y = 0, seen from above under `view_deg` to its normal by a camera with a narrow angle,
 /// so that the view direction hardly varies over the film.
@@ -33,8 +31,5 @@ struct BandStatistics {
 };
 /// Mean over all pixels of one band, with its standard error from the spread between pixels.
 BandStatistics band_statistics(const SpectralImage& image, int band);
-
-/// Sidak's bound for n comparisons at a family-wise rate of 1e-6, in standard errors.
-double sidak_sigmas(int comparisons);
 
 } // namespace reradiant::test

@@ -1,6 +1,6 @@
 // Sweeps of what is compiled in or tabulated by size: bands and layers, in a white furnace.
-#include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ void expect_white(const Material& look, const WavelengthGrid& bands, const std::
 }
 
 TEST(Sweeps, BandsFromOneTo471) {
-    const std::vector<int> counts = is_full_run()
+    const std::vector<int> counts = test::is_full_run()
                                         ? std::vector{1, 2, 15, 16, 17, 31, 64, 65, 128, 471}
                                         : std::vector{1, 17, 471};
     for (const int count : counts)

@@ -90,7 +90,7 @@ void expect_mean(const Scene& scene, double expected, const char* what) {
             sum += reflectance_at(result, x, y) / (film * film);
     // pixels differ by more than chance: at most 1/4 is the variance of a number in 0..1
     variance = 0.25 / (film * film * 256);
-    EXPECT_NEAR(sum, expected, sidak_sigmas(4) * std::sqrt(variance)) << what;
+    EXPECT_NEAR(sum, expected, test::sidak_bound(4) * std::sqrt(variance)) << what;
 }
 
 TEST(Textures, CheckerHasBothMaterialsInTheirSquares) {

@@ -57,10 +57,10 @@ void expect_agreement_with_adding(const Lighting& lighting, std::uint32_t sample
             Comparison less_black = all;
             less_black.add(strip_statistics(walk.image, i + count, band), -1.0);
             less_black.add(strip_statistics(adding.image, i + count, band), 1.0);
-            less_black.expect_equal(sidak_sigmas(comparisons));
+            less_black.expect_equal(test::sidak_bound(comparisons));
             const bool is_smooth = material(stack.layers, 0.0).stack.is_smooth();
             if (is_smooth && !stack.layers.empty() && !stack.layers.front().scatters())
-                all.expect_equal(sidak_sigmas(comparisons));
+                all.expect_equal(test::sidak_bound(comparisons));
         }
 }
 
@@ -68,7 +68,7 @@ TEST(Walk, AgreesWithAddingUnderEveryLight) {
     expect_agreement_with_adding(every_light, 128);
 }
 TEST(Walk, AgreesWithAddingUnderEachLight) {
-    if (!is_full_run())
+    if (!test::is_full_run())
         GTEST_SKIP() << "in the full run only: each light by itself";
     for (const Light& light : every_light.lights)
         expect_agreement_with_adding({{light}}, 128);
@@ -93,7 +93,8 @@ TEST(Walk, WhiteFurnaceIsWhite) {
         // exact but for roulette of very long walks, and rounding
         const bool is_blinn = i + 1 == stacks.size();
         const double known_to = is_blinn ? 1e-3 : 1e-5;
-        EXPECT_NEAR(found.mean, 1.0, known_to + sidak_sigmas(comparisons) * found.standard_error)
+        EXPECT_NEAR(found.mean, 1.0,
+                    known_to + test::sidak_bound(comparisons) * found.standard_error)
             << stacks[i].name;
         // every walk weighs 1, but those of V-cavities, whose facets are masked
         EXPECT_LT(found.standard_error, is_blinn ? 5e-3 : 1e-3) << stacks[i].name;
@@ -142,9 +143,9 @@ TEST(Walk, MixturesAndTexturesAreTheMeanOfWhatTheyMix) {
         for (const int strip : {2, 3}) {
             const BandStatistics mixed = strip_statistics(result.image, strip, band);
             EXPECT_NEAR(mixed.mean, 0.5 * (a.mean + b.mean),
-                        sidak_sigmas(comparisons) * std::hypot(mixed.standard_error,
-                                                               0.5 * a.standard_error,
-                                                               0.5 * b.standard_error))
+                        test::sidak_bound(comparisons) * std::hypot(mixed.standard_error,
+                                                                    0.5 * a.standard_error,
+                                                                    0.5 * b.standard_error))
                 << "strip " << strip << ", band " << band;
         }
     }
@@ -160,17 +161,18 @@ TEST(Walk, SameSeedGivesTheSameImageWhateverTheBatch) {
 TEST(Walk, LeavesNothingWhereNoMaterialAsksForIt) {
     Scene scene = strips_scene({over_grey({layer(1.5)})});
     scene.lights = sun.lights;
-    const WavelengthPlan plan = plan_wavelengths(scene, bands, {});
-    const SceneTables without = build_scene_tables(scene, plan, Model::Auto);
+    RenderOptions options;
+    options.bands = bands;
+    const RenderPlan without = plan_render(scene, device().info(), options);
     EXPECT_FALSE(without.features.walk);
-    EXPECT_TRUE(without.walk_parts.empty());
-    const std::vector<std::string> lines = without.features.left_out();
+    EXPECT_TRUE(build_scene_tables(scene, without).walk_parts.empty());
+    const std::vector<std::string> lines = without.left_out();
     EXPECT_NE(std::find(lines.begin(), lines.end(), "walk: no material uses the model walk"),
               lines.end());
     scene.materials.front().model = Model::Walk;
-    const SceneTables with = build_scene_tables(scene, plan, Model::Auto);
+    const RenderPlan with = plan_render(scene, device().info(), options);
     EXPECT_TRUE(with.features.walk);
-    EXPECT_EQ(with.walk_parts.size(), 2u);
+    EXPECT_EQ(build_scene_tables(scene, with).walk_parts.size(), 2u);
 }
 
 void expect_refusal(const Material& refused, const char* text) {

@@ -96,7 +96,7 @@ TEST(Walk, MatchesTheDoublePrecisionWalkInAngle) {
     for (std::size_t m = 0; m < materials.size(); ++m) {
         const LayerWalk walk(materials[m].stack, twin_substrate(materials[m].substrate, nm), nm);
         const WalkEstimate twin =
-            estimate_walk(walk, wi, wo, is_full_run() ? 1u << 20 : 1u << 14, 3);
+            estimate_walk(walk, wi, wo, test::is_full_run() ? 1u << 20 : 1u << 14, 3);
         for (std::size_t b = 0; b < nm.size(); ++b) {
             const auto row = static_cast<Eigen::Index>(b);
             const auto sum_of = [&](const WalkTally::Parts& parts, bool squared) {
@@ -108,7 +108,8 @@ TEST(Walk, MatchesTheDoublePrecisionWalkInAngle) {
             const BandStatistics found =
                 strip_statistics(result.image, static_cast<int>(m), compared[b]);
             const double error = std::sqrt(square(found.standard_error) + variance);
-            EXPECT_NEAR(found.mean, expected, sidak_sigmas(comparisons) * error + 2e-4 * expected)
+            EXPECT_NEAR(found.mean, expected,
+                        test::sidak_bound(comparisons) * error + 2e-4 * expected)
                 << "material " << m << ", band " << compared[b] << ", standard error " << error;
         }
     }
@@ -134,7 +135,7 @@ TEST(Walk, LightsLookedForAndLightsFoundAgree) {
             const BandStatistics b = strip_statistics(looked_for.image, static_cast<int>(m), band);
             const double error = std::hypot(a.standard_error, b.standard_error);
             // the basis of rgb spectra adds up to one to single precision
-            EXPECT_NEAR(a.mean, b.mean, sidak_sigmas(comparisons) * error + 1e-5)
+            EXPECT_NEAR(a.mean, b.mean, test::sidak_bound(comparisons) * error + 1e-5)
                 << "material " << m << ", band " << band << ", standard error " << error;
         }
 }

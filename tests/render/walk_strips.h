@@ -2,8 +2,8 @@
 
 // Scenes of the walk's tests: materials side by side under one view.
 
-#include "tests/full_run.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/full_run.h"
 
 #include <algorithm>
 #include <cmath>

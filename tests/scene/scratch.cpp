@@ -3,10 +3,7 @@
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
-#include <fstream>
 #include <mutex>
-
-#include <unistd.h>
 
 namespace reradiant::testing {
 
@@ -46,22 +43,6 @@ center = [0, 0, 0]
 radius = 1
 material = "grey"
 )";
-
-void Scratch::SetUp() {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder = std::filesystem::temp_directory_path() /
-             ("reradiant-" + std::to_string(::getpid()) + "-" + info->name());
-    std::filesystem::create_directories(folder);
-}
-
-void Scratch::TearDown() {
-    std::filesystem::remove_all(folder);
-}
-
-std::filesystem::path Scratch::write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder / name, std::ios::binary) << text;
-    return folder / name;
-}
 
 Caught error_of(const std::function<void()>& action) {
     try {

@@ -2,6 +2,7 @@
 
 #include "reradiant/error.h"
 #include "reradiant/scene.h"
+#include "tests/support/scratch_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -12,15 +13,7 @@
 
 namespace reradiant::testing {
 
-/// A folder of its own for one test, removed afterwards.
-class Scratch : public ::testing::Test {
-protected:
-    void SetUp() override;
-    void TearDown() override;
-    std::filesystem::path write(const std::string& name, const std::string& text) const;
-
-    std::filesystem::path folder;
-};
+using Scratch = test::ScratchFolder;
 
 /// The Error that an action throws; a failed test and nothing when it throws none.
 struct Caught {

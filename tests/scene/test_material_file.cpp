@@ -1,3 +1,4 @@
+#include "reradiant/reradiation.h"
 #include "reradiant/scene_file.h"
 #include "tests/scene/scratch.h"
 

@@ -20,13 +20,7 @@ std::ostream& operator<<(std::ostream& stream, const BadScene& bad) {
     return stream << bad.name;
 }
 
-class BadSceneFile : public Scratch, public ::testing::WithParamInterface<BadScene> {
-    void SetUp() override {
-        folder = std::filesystem::temp_directory_path() /
-                 ("reradiant-bad-" + std::to_string(::getpid()) + "-" + GetParam().name);
-        std::filesystem::create_directories(folder);
-    }
-};
+class BadSceneFile : public Scratch, public ::testing::WithParamInterface<BadScene> {};
 
 TEST_P(BadSceneFile, IsRefusedAtItsPlace) {
     const BadScene& bad = GetParam();

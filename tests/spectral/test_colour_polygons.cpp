@@ -1,6 +1,6 @@
 #include "host/spectral/colour/colour_polygons.h"
 #include "reradiant/error.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 #include <cmath>
 
@@ -8,7 +8,7 @@ using namespace reradiant;
 
 namespace {
 
-class ColourPolygons : public ScratchFolder {
+class ColourPolygons : public test::ScratchFolder {
 protected:
     void expect_refused(const std::string& text, const std::string& place) const {
         const auto file = write("bad.csv", text);

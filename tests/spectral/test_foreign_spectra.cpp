@@ -1,7 +1,7 @@
 #include "reradiant/reradiation_file.h"
 #include "reradiant/spectrum_file.h"
 #include "tests/spectral/refusal.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 using namespace reradiant;
 
@@ -14,7 +14,7 @@ const std::string cgats_head = "CGATS.17\nORIGINATOR \"a lab\"\n# remark\nNUMBER
                                "BEGIN_DATA_FORMAT\n";
 
 /// Spectra in formats of other programs, under any ending.
-class ForeignSpectra : public ScratchFolder {
+class ForeignSpectra : public test::ScratchFolder {
 protected:
     Spectrum read(const std::string& text, const std::string& name = "s.csv") const {
         return read_spectrum(write(name, text));

@@ -1,7 +1,7 @@
 #include "reradiant/error.h"
 #include "reradiant/reradiation_file.h"
 #include "reradiant/spectrum_file.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 #include <chrono>
 #include <random>
@@ -10,10 +10,10 @@ using namespace reradiant;
 
 namespace {
 
-class HostileFiles : public ScratchFolder {
+class HostileFiles : public test::ScratchFolder {
 protected:
     void SetUp() override {
-        ScratchFolder::SetUp();
+        test::ScratchFolder::SetUp();
         matrix_ = {{400, 10, 3}, {390, 10, 4}, Eigen::MatrixXd::Zero(3, 4)};
         matrix_.values << 0.01, 0.3, 0, 0, 0, 0.1, 0.7, 0, 0.04, 0.05, 0.06, 0.4;
     }
@@ -39,7 +39,7 @@ protected:
 TEST_F(HostileFiles, Case36TruncationAtEveryByteIsAnErrorOrAWholeMatrix) {
     for (const char* name : {"m.csv", "m.bfc", "m.exr"}) {
         write_reradiation(path(name), matrix_);
-        const std::string whole = content(path(name));
+        const std::string whole = test::file_bytes(path(name));
         for (std::size_t size = 0; size < whole.size(); ++size)
             read_somehow(name, whole.substr(0, size));
     }
@@ -47,7 +47,7 @@ TEST_F(HostileFiles, Case36TruncationAtEveryByteIsAnErrorOrAWholeMatrix) {
 
 TEST_F(HostileFiles, Case36BfcCutBeforeItsEndIsRefused) {
     write_reradiation(path("m.bfc"), matrix_);
-    const std::string whole = content(path("m.bfc"));
+    const std::string whole = test::file_bytes(path("m.bfc"));
     // Every length up to the line end after EOD is refused; only the line end itself may be
     // missing.
     for (std::size_t size = 0; size < whole.size() - 2; ++size)
@@ -58,7 +58,7 @@ TEST_F(HostileFiles, FlippedBytesAreAnErrorOrAWholeMatrix) {
     std::mt19937 generator(11);
     for (const char* name : {"m.csv", "m.bfc", "m.exr"}) {
         write_reradiation(path(name), matrix_);
-        const std::string whole = content(path(name));
+        const std::string whole = test::file_bytes(path(name));
         for (int trial = 0; trial < 300; ++trial) {
             std::string bytes = whole;
             for (int flips = 0; flips < 3; ++flips)
@@ -108,7 +108,7 @@ TEST_F(HostileFiles, Case36HugeFilesAreRefusedUnread) {
 TEST_F(HostileFiles, ImageOfManyPixelsIsNoMatrix) {
     // A 1 x 1 image's data window is 16 bytes; widen it without the pixels.
     write_reradiation(path("m.exr"), matrix_);
-    std::string bytes = content(path("m.exr"));
+    std::string bytes = test::file_bytes(path("m.exr"));
     const auto at = bytes.find("dataWindow");
     ASSERT_NE(at, std::string::npos);
     const auto corner = at + std::string("dataWindow").size() + 1 + std::string("box2i").size() +
@@ -120,7 +120,7 @@ TEST_F(HostileFiles, ImageOfManyPixelsIsNoMatrix) {
 
 TEST_F(HostileFiles, SpectraSurviveTruncationAndNoise) {
     write_spectrum(path("s.csv"), {400, 410, 420}, {0.1, 0.25, 1.5e-3});
-    const std::string whole = content(path("s.csv"));
+    const std::string whole = test::file_bytes(path("s.csv"));
     std::mt19937 generator(13);
     for (int trial = 0; trial < 600; ++trial) {
         std::string bytes = whole.substr(0, generator() % (whole.size() + 1));

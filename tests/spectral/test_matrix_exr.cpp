@@ -1,6 +1,6 @@
 #include "reradiant/error.h"
 #include "reradiant/reradiation_file.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -40,7 +40,7 @@ private:
     void flush_() override {}
 };
 
-class MatrixExr : public ScratchFolder {
+class MatrixExr : public test::ScratchFolder {
 protected:
     std::vector<std::string> channels() const {
         Imf::InputFile input(path("m.exr").c_str());

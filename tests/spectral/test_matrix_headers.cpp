@@ -2,7 +2,7 @@
 #include "reradiant/reradiation_file.h"
 #include "reradiant/spectrum_file.h"
 #include "tests/spectral/refusal.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@ namespace {
 
 /// These tests read the '#' lines and headings of a re-radiation CSV as people and spreadsheets
 /// write them.
-class MatrixHeaders : public ScratchFolder {
+class MatrixHeaders : public test::ScratchFolder {
 protected:
     ReradiationMatrix read(const std::string& text) const {
         return read_reradiation(write("m.csv", text));

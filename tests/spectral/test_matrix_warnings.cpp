@@ -2,7 +2,7 @@
 #include "host/spectral/evidence/matrix_evidence.h"
 #include "host/spectral/evidence/matrix_warnings.h"
 #include "reradiant/reradiation_file.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 #include <cmath>
 #include <random>

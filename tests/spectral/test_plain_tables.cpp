@@ -2,7 +2,7 @@
 #include "reradiant/reradiation_file.h"
 #include "reradiant/spectrum_file.h"
 #include "tests/spectral/refusal.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@ using namespace reradiant;
 namespace {
 
 /// Tables of numbers as spreadsheets and instruments export them, without a word of what they are.
-class PlainTables : public ScratchFolder {
+class PlainTables : public test::ScratchFolder {
 protected:
     ReradiationMatrix read(const std::string& text, const TableWords& words) const {
         return read_reradiation(write("m.csv", text), Gaps::Refused, table_form(words));

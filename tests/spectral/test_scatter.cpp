@@ -1,7 +1,7 @@
 #include "host/spectral/evidence/scatter_detection.h"
 #include "host/spectral/evidence/scatter_warnings.h"
-#include "tests/full_run.h"
 #include "tests/spectral/scatter_cases.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
@@ -99,7 +99,7 @@ TEST(Scatter, SecondOrderIsFoundOnEveryGrid) {
 
 TEST(Scatter, DyesAreNoLines) {
     std::mt19937 random(2);
-    const int sets = is_full_run() ? 100 : 20;
+    const int sets = test::is_full_run() ? 100 : 20;
     for (const Grids& grids : all_grids)
         for (const bool narrow : {false, true})
             for (const double noise : {0.0, 1e-3, 1e-2, 5e-2})

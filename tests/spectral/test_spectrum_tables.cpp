@@ -2,14 +2,14 @@
 #include "reradiant/reradiation_file.h"
 #include "reradiant/spectrum_file.h"
 #include "tests/spectral/refusal.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 using namespace reradiant;
 
 namespace {
 
 /// Tables of two columns as spreadsheets, scripts and instruments write them.
-class SpectrumTables : public ScratchFolder {
+class SpectrumTables : public test::ScratchFolder {
 protected:
     static std::filesystem::path input(const std::string& name) {
         return std::filesystem::path(RERADIANT_SOURCE_DIR) / "tests" / "spectral" / "inputs" / name;

@@ -2,28 +2,20 @@
 
 #include "host/study/study/study_file.h"
 #include "reradiant/error.h"
+#include "tests/support/scratch_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <unistd.h>
 
 namespace reradiant::test {
 
 /// A folder with files of a study, removed with the test.
-class StudyTest : public ::testing::Test {
+class StudyTest : public ScratchFolder {
 protected:
-    void SetUp() override {
-        const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder =
-            std::filesystem::temp_directory_path() /
-            ("reradiant-study-" + std::string(info->name()) + "-" + std::to_string(::getpid()));
-        std::filesystem::create_directories(folder);
-        put("sample.toml", material);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder); }
+    void SetUp() override { put("sample.toml", material); }
 
     void put(const std::string& name, const std::string& text) const {
         std::ofstream(folder / name) << text;
@@ -47,7 +39,6 @@ protected:
         return {};
     }
 
-    std::filesystem::path folder;
     /// A dye beneath a varnish.
     const std::string material =
         "[material]\n"

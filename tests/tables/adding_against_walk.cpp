@@ -2,7 +2,7 @@
 // Lambertian substrate, the white furnace with what `single` loses, and reciprocity.
 #include "host/layers/stack/directions.h"
 #include "tests/layers/walk_stacks.h"
-#include "tests/layers/walk_statistics.h"
+#include "tests/support/statistics.h"
 
 #include <fmt/core.h>
 
@@ -68,7 +68,7 @@ void compare_models() {
     // through a depth of 5 hardly a walk reaches the substrate at a slant
     const std::vector<std::pair<double, double>> wide{{0, 30}, {70, 55}}, steep{{0, 30}, {10, 20}};
     const double comparisons = 3.0 * static_cast<double>(stacks.size() * wide.size());
-    const double bound = sidak_bound(comparisons);
+    const double bound = test::sidak_bound(comparisons);
     fmt::print("## BRRDF over a bispectral Lambertian substrate\n\n{} pairs of stack and angles, "
                "bound of {:.2f} standard errors\n\n"
                "| stack | in, out deg | adding 400 to 600 | walk | s.e. % | largest z of 3 |\n"
@@ -79,7 +79,8 @@ void compare_models() {
         const LayerWalk walk(stacks[k], {.matrix = bispectral_matrix()}, two_bands_nm);
         const bool deep = stacks[k].layers[0].absorption(500.0) > 1.0;
         for (const auto& [theta_i, theta_o] : deep ? steep : wide) {
-            const kernels::Vec3 wi = direction_deg(theta_i, 0), wo = direction_deg(theta_o, 60);
+            const kernels::Vec3 wi = test::direction_deg(theta_i, 0),
+                                wo = test::direction_deg(theta_o, 60);
             const AddingValues adding = adding_values(stacks[k], wi, wo);
             const WalkEstimate found = precise_estimate(walk, wi, wo, k);
             const Eigen::MatrixXd& mean = found.mean.directional[0].diffuse;
@@ -133,7 +134,7 @@ void white_furnace() {
                "| slabs | n | alpha | theta | multiple, adding | multiple, walk | lost by single, "
                "adding | walk | s.e. |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     const SubstrateValues white{.matrix = Eigen::MatrixXd::Identity(1, 1)};
-    const double bound = sidak_bound(108);
+    const double bound = test::sidak_bound(108);
     for (int slabs = 1; slabs <= 3; ++slabs) {
         for (const double ior : {1.2, 1.5, 2.4}) {
             for (const double alpha : {0.02, 0.1, 0.3, 0.6}) {
@@ -141,7 +142,7 @@ void white_furnace() {
                 const LayerStack single = white_stack(slabs, ior, alpha, Scattering::Single);
                 const LayerWalk follows(multiple, white, {550.0}), loses(single, white, {550.0});
                 for (const double theta : {0.0, 40.0, 80.0}) {
-                    const kernels::Vec3 wi = direction_deg(theta, 0);
+                    const kernels::Vec3 wi = test::direction_deg(theta, 0);
                     const double adding = adding_albedo(stack_at(multiple, 550.0), wi.z);
                     const double lost = 1.0 - adding_albedo(stack_at(single, 550.0), wi.z);
                     const auto albedo = [](const WalkTally& tally) {
@@ -170,11 +171,11 @@ void white_furnace() {
 void reciprocity() {
     fmt::print("\n## Reciprocity\n\n| stack | adding: 2 integral c T dc / (n^2 (1 - r)) - 1 | "
                "walk there | and back | z |\n| --- | --- | --- | --- | --- |\n");
-    const kernels::Vec3 a = direction_deg(20, 0), b = direction_deg(65, 50);
+    const kernels::Vec3 a = test::direction_deg(20, 0), b = test::direction_deg(65, 50);
     std::vector<LayerStack> stacks = stacks_to_compare();
     std::erase_if(stacks, [](const LayerStack& s) { return s.layers.size() == 1; });
     stacks.push_back({{cloudy_layer(1.5, 0.2, 0.0, 1.0, 0.6), plain_layer(1.2, 0.2, 0.0)}});
-    const double bound = sidak_bound(static_cast<double>(stacks.size()));
+    const double bound = test::sidak_bound(static_cast<double>(stacks.size()));
     for (LayerStack& stack : stacks) {
         const LayerWalk walk(stack, {.matrix = bispectral_matrix()}, two_bands_nm);
         const WalkEstimate there = estimate_walk(walk, a, {&b, 1}, 1U << 16U, 1);

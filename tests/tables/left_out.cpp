@@ -9,7 +9,7 @@
 #include "reradiant/render.h"
 #include "reradiant/scene.h"
 #include "reradiant/scene_file.h"
-#include "tests/layers/walk_statistics.h"
+#include "tests/support/statistics.h"
 #include "tests/tables/built_kernels.h"
 
 #include <fmt/core.h>
@@ -158,8 +158,8 @@ bool print_scene(const BuiltScene& built, const Device& device) {
     const RenderResult needed = render(scene, device, some), kept = render(scene, device, keeping);
     const TileDistance features = tile_distance(needed.image, render(scene, device, all).image);
     const TileDistance wavelengths = tile_distance(needed.image, kept.image);
-    const bool same = features.largest < sidak_bound(features.tiles) &&
-                      wavelengths.largest < sidak_bound(wavelengths.tiles);
+    const bool same = features.largest < test::sidak_bound(features.tiles) &&
+                      wavelengths.largest < test::sidak_bound(wavelengths.tiles);
     fmt::print("| {} | {} | {:.0f} / {:.0f} | {:.1f} / {:.1f} | {:.1f} / {:.1f} | {:.1f} / {:.1f} "
                "| {:.2f} | {:.2f} | {} / {} | {:.2f} | {:.1f}, {:.1f}{} |\n",
                built.name, on_features(needed), kibibytes(built.some.source_bytes),

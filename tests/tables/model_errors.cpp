@@ -4,7 +4,7 @@
 #include "reradiant/measure.h"
 #include "reradiant/paths.h"
 #include "reradiant/scene_file.h"
-#include "tests/layers/walk_statistics.h"
+#include "tests/support/statistics.h"
 
 #include <fmt/core.h>
 
@@ -22,7 +22,7 @@ const WavelengthGrid bands{400, 40, 10};
 const std::vector<double> albedo_angles{0, 20, 40, 60, 75, 85, 89};
 constexpr long hemispherical_paths = 1L << 13U, directional_paths = 1L << 14U;
 /// Paths at ten bands and seven angles: what is a standard error for all of them.
-const double bound = sidak_bound(70 * 30);
+const double bound = test::sidak_bound(70 * 30);
 
 /// Light that leaves per light of one excitation band, at all wavelengths, by geometry.
 struct Sum {

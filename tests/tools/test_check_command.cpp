@@ -35,8 +35,8 @@ TEST_F(CheckCommand, EndsWithThreeWhenAFunctionFails) {
     fs::create_directories(folder / "data");
     fs::copy(fs::path(RERADIANT_SOURCE_DIR) / "kernels", folder / "data" / "kernels",
              fs::copy_options::recursive);
-    const fs::path file = folder / "data" / "kernels" / "fresnel.h";
-    put("data/kernels/fresnel.h",
+    const fs::path file = folder / "data" / "kernels/scatter/fresnel.h";
+    put("data/kernels/scatter/fresnel.h",
         replaced(file_bytes(file), "r = REAL(0.5) *", "r = REAL(0.51) *"));
     const ProgramResult result = run(quick, "RERADIANT_DATA=data");
     EXPECT_EQ(result.exit_code, 3);

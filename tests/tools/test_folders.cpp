@@ -27,8 +27,9 @@ protected:
         for (const std::string& text : said)
             EXPECT_NE(result.errors.find(text), std::string::npos) << environment << "\n"
                                                                    << result.errors;
-        if (said.empty())
+        if (said.empty()) {
             EXPECT_EQ(result.errors, "") << environment;
+        }
     }
 };
 

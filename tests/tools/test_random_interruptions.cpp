@@ -1,5 +1,5 @@
 // A render that is interrupted again and again, at random moments, ends as if it never had been.
-#include "tests/full_run.h"
+#include "tests/support/full_run.h"
 #include "tests/tools/program_runner.h"
 
 #include <chrono>
@@ -96,17 +96,17 @@ protected:
 } // namespace
 
 TEST_F(RandomInterruptions, ResumedRenderEqualsTheUninterruptedOne) {
-    expect_same_end("", is_full_run() ? 50 : 3);
+    expect_same_end("", test::is_full_run() ? 50 : 3);
 }
 
 TEST_F(RandomInterruptions, WithHeroWavelengthsToo) {
-    if (!is_full_run())
+    if (!test::is_full_run())
         GTEST_SKIP() << "only in full runs";
     expect_same_end(" --wavelengths hero", 50);
 }
 
 TEST_F(RandomInterruptions, WithWalksToo) {
-    if (!is_full_run())
+    if (!test::is_full_run())
         GTEST_SKIP() << "only in full runs";
     expect_same_end(" --model walk", 50);
 }

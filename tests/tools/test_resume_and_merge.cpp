@@ -114,6 +114,19 @@ TEST_F(ResumeAndMerge, Case58AnotherSceneOrSettingIsRefusedByNameAndADoneRenderI
     EXPECT_EQ(std::filesystem::last_write_time(folder / "done.exr"), written);
 }
 
+TEST_F(ResumeAndMerge, Case58EditedHeaderOfTheKernelsIsAnotherBuild) {
+    interrupt(SIGINT, 0);
+    ASSERT_TRUE(std::filesystem::exists(folder / "out.exr.checkpoint"));
+    const std::filesystem::path source = RERADIANT_SOURCE_DIR;
+    std::filesystem::create_directories(folder / "data");
+    for (const char* part : {"spectra", "kernels"})
+        std::filesystem::copy(source / part, folder / "data" / part,
+                              std::filesystem::copy_options::recursive);
+    std::ofstream(folder / "data/kernels/core/table.h", std::ios::app) << "// edited\n";
+    expect_failure(2, "render scene.toml -o out.exr --spp 1000000 --resume", "build",
+                   "RERADIANT_DATA=data");
+}
+
 TEST_F(ResumeAndMerge, DamagedCheckpointsAreRefused) {
     run("render scene.toml -o warm.exr --spp 1");
     interrupt(SIGINT, 50);

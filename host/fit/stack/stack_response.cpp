@@ -1,7 +1,7 @@
 #include "host/fit/stack/stack_response.h"
 
-#include "reradiant/adding.h"
 #include "reradiant/error.h"
+#include "reradiant/stack_model.h"
 
 #include <Eigen/LU>
 #include <fmt/core.h>

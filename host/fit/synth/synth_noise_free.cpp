@@ -1,7 +1,8 @@
+#include "reradiant/synth.h"
+
 #include "host/measure/measure_substrate.h"
 #include "reradiant/measure.h"
 #include "reradiant/reradiation.h"
-#include "reradiant/synth.h"
 
 #include <Eigen/Core>
 #include <fmt/core.h>

@@ -6,8 +6,8 @@
 #include "host/layers/stack/stack_check.h"
 #include "kernels/scatter/fresnel.h"
 #include "kernels/scatter/microfacet.h"
-#include "reradiant/adding.h"
 #include "reradiant/error.h"
+#include "reradiant/stack_model.h"
 
 #include <algorithm>
 #include <deque>

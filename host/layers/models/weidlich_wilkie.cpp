@@ -1,10 +1,9 @@
 #include "host/layers/models/weidlich_wilkie.h"
 
 #include "host/layers/rough/facet_reflectance.h"
-#include "kernels/scatter/fresnel.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
-#include "kernels/stack/layer_stack.h"
+#include "kernels/stack/model_a.h"
 
 #include <cmath>
 #include <numbers>
@@ -16,12 +15,10 @@ using kernels::Vec3;
 namespace {
 
 /// A `Descent` holds both directions on their way down, and what the parts above let through each
-/// way; both are 0 once one of the directions was totally reflected.
-struct Descent {
-    Vec3 wi, wo;
-    double in = 1.0, out = 1.0;
+/// way.
+struct Descent : kernels::LayerDescent {
 
-    double through() const { return in * out; }
+    double through() const { return way_in * way_out; }
     bool passes() const { return wi.z > 0.0 && wo.z > 0.0; }
 };
 
@@ -29,38 +26,21 @@ double passage(double tau, double cosine) {
     return tau > 0.0 ? std::exp(-tau / cosine) : 1.0;
 }
 
-/// A direction of the medium above refracted at the macroscopic normal; z = 0 beyond the critical
-/// angle.
-Vec3 refract_macroscopic(const Vec3& w, double eta) {
-    return kernels::vec3(w.x / eta, w.y / eta, kernels::fresnel_cos_transmitted(w.z, eta));
-}
-
-/// Crosses an interface: T12 on the way in, t = (1 - G) + T21 G on the way out. T21 at the
-/// refracted direction equals T12 at the direction above.
+/// A film lets through what it does not reflect at the normal of the surface, however rough.
 void cross_interface(const SurfaceValues& surface, Descent& d) {
-    double cos_i = d.wi.z, cos_o = d.wo.z, g = 1.0;
-    if (surface.alpha > 0.0 && !surface.has_film()) {
-        const Vec3 h = kernels::vec3_normalise(kernels::vec3_add(d.wi, d.wo));
-        cos_i = kernels::vec3_dot(d.wi, h);
-        cos_o = kernels::vec3_dot(d.wo, h);
-        g = kernels::microfacet_g2(kernel_distribution(surface.distribution), surface.alpha, d.wi,
-                                   d.wo, h);
-    }
-    d.in *= 1.0 - facet_reflectance(surface, cos_i);
-    d.out *= (1.0 - g) + (1.0 - facet_reflectance(surface, cos_o)) * g;
-    d.wi = refract_macroscopic(d.wi, surface.ior_below / surface.ior_above);
-    d.wo = refract_macroscopic(d.wo, surface.ior_below / surface.ior_above);
-    if (!d.passes())
-        d.in = d.out = 0.0;
+    const double alpha = surface.has_film() ? 0.0 : surface.alpha;
+    const kernels::LayerMeeting meeting =
+        kernels::model_a_meeting(kernel_distribution(surface.distribution), alpha, d.wi, d.wo);
+    kernels::model_a_cross(&d, meeting, surface.ior_below / surface.ior_above,
+                           1.0 - facet_reflectance(surface, meeting.cos_i),
+                           1.0 - facet_reflectance(surface, meeting.cos_o));
 }
 
 void cross(const StackElement& element, Descent& d) {
     if (const auto* slab = std::get_if<SlabValues>(&element)) {
-        d.in *= passage(slab->depth(), d.wi.z);
-        d.out *= passage(slab->depth(), d.wo.z);
+        kernels::model_a_pass(&d, passage(slab->depth(), d.wi.z), passage(slab->depth(), d.wo.z));
     } else if (const auto* flakes = std::get_if<FlakesValues>(&element)) {
-        d.in *= 1.0 - flakes->coverage;
-        d.out *= 1.0 - flakes->coverage;
+        kernels::model_a_pass(&d, 1.0 - flakes->coverage, 1.0 - flakes->coverage);
     } else {
         cross_interface(std::get<SurfaceValues>(element), d);
     }
@@ -70,9 +50,9 @@ void cross(const StackElement& element, Descent& d) {
 /// until one of them is totally reflected; returns what arrives at the substrate.
 template <typename Visit>
 Descent descend(const StackElements& stack, const Vec3& wi, const Vec3& wo, const Visit& visit) {
-    Descent d{wi, wo};
+    Descent d{kernels::model_a_start(wi, wo)};
     if (!d.passes())
-        d.in = d.out = 0.0;
+        kernels::model_a_pass(&d, 0.0, 0.0);
     for (const StackElement& element : above_substrate(stack)) {
         if (!d.passes())
             return d;
@@ -100,14 +80,12 @@ double mirror(const SurfaceValues& surface, const Descent& d) {
     return surface.alpha > 0.0 ? 0.0 : facet_reflectance(surface, d.wi.z);
 }
 
-/// Light that comes along -wi, is scattered once and leaves along wo.
+/// Light that a slab scatters once.
 double slab_lobe(const SlabValues& slab, const Descent& d) {
     if (!slab.scatters())
         return 0.0;
     const double tau = slab.depth();
-    const double phase =
-        kernels::layer_stack_phase(slab.anisotropy, -kernels::vec3_dot(d.wi, d.wo));
-    return -slab.tau_scattering / tau * phase / (d.wi.z + d.wo.z) *
+    return kernels::model_a_slab(-slab.tau_scattering / tau, slab.anisotropy, d.wi, d.wo) *
            std::expm1(-tau * (1.0 / d.wi.z + 1.0 / d.wo.z));
 }
 
@@ -150,11 +128,11 @@ double WeidlichWilkie::specular_delta(const StackElements& stack, double cos_the
 }
 
 double WeidlichWilkie::way_in(const StackElements& stack, const Vec3& wi, const Vec3& wo) {
-    return arrive(stack, wi, wo).in;
+    return arrive(stack, wi, wo).way_in;
 }
 
 double WeidlichWilkie::way_out(const StackElements& stack, const Vec3& wi, const Vec3& wo) {
-    return arrive(stack, wi, wo).out;
+    return arrive(stack, wi, wo).way_out;
 }
 
 double WeidlichWilkie::diffuse_shape(const StackElements& stack, double sigma, const Vec3& wi,

@@ -1,6 +1,7 @@
+#include "host/layers/rough/interface_operator.h"
+
 #include "host/base/logging.h"
 #include "host/layers/rough/interface_file.h"
-#include "host/layers/rough/interface_operator.h"
 
 #include <cmath>
 #include <map>

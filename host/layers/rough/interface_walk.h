@@ -60,9 +60,8 @@ struct Departure {
 /// `single` (and blinn): Walter et al. 2007 with G2 = 1 / (1 + Lambda_i + Lambda_o) (blinn: the
 /// V-cavity's G) for reflection and refraction; what is masked is lost.
 /// `multiple` (ggx, beckmann): random walk on the Smith microsurface (Heitz, Hanika, d'Eon and
-/// Dachsbacher 2016, sections 4 to 6), heights uncorrelated with slopes, refraction included.
-/// Only the distribution function C of heights matters, so C itself is the height. At every
-/// facet the expected departures of both branches are scored; the walk goes on with the rest.
+/// Dachsbacher 2016, sections 4 to 6), heights uncorrelated with slopes, refraction included. At
+/// every facet the expected departures of both branches are scored; the walk goes on with the rest.
 double scatter_at_interface(const RoughInterface& interface, bool from_below, double cosine,
                             WalkNumbers& numbers, std::vector<Departure>& departures);
 

@@ -14,28 +14,8 @@ namespace reradiant {
 /// operator (host/layers/rough/interface_operator.h) adds, with the same cells of direction.
 class LostFlux {
 public:
-    /// Returns the share of flux from `cosine` on a side that single scattering loses. Side 0 is
-    /// the thinner medium, of IOR 1 here; side 1 is the other one, of IOR eta >= 1.
-    double lost(int side, double cosine) const;
-    /// Returns the BSDF without cosine, 1/sr, of light given back from one direction into another.
-    double value(int from_side, double from_cosine, int to_side, double to_cosine) const;
-    /// A `Departure` is the side and cosine at which given-back light leaves. `sample` draws one
-    /// from two uniform numbers with a probability in proportion to n^2 c lost(c).
-    struct Departure {
-        int side;
-        double cosine;
-    };
-    Departure sample(double u1, double u2) const;
-
-    /// Cells of direction of one side: cosines ascending, and the lost share of each cell.
-    struct Cells {
-        double ior = 1.0;
-        std::vector<double> edges;
-        std::vector<double> lost;
-    };
-    const std::vector<Cells>& sides() const { return sides_; }
-    /// Running sum, over the cells of all sides, of etendue times lost.
-    const std::vector<double>& cumulative() const { return cumulative_; }
+    /// The table that kernels/walk/walk_cavities.h describes and reads.
+    const std::vector<double>& table() const { return table_; }
 
     /// Returns the lost flux of a surface, shared by all who ask for the same one; thread-safe.
     /// `eta` >= 1 is the IOR ratio of a dielectric interface; 0 stands for an opaque surface that
@@ -45,8 +25,7 @@ public:
 private:
     LostFlux(double eta, double alpha);
 
-    std::vector<Cells> sides_;
-    std::vector<double> cumulative_;
+    std::vector<double> table_;
 };
 
 } // namespace reradiant

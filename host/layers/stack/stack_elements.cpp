@@ -82,6 +82,14 @@ const SurfaceValues* surface_of(const StackElement& element) {
     return std::get_if<SurfaceValues>(&element);
 }
 
+std::vector<std::size_t> reflecting_elements(std::span<const StackElement> stack) {
+    std::vector<std::size_t> elements;
+    for (std::size_t e = 0; e < stack.size(); ++e)
+        if (surface_of(stack[e]))
+            elements.push_back(e);
+    return elements;
+}
+
 double coverage_of(const StackElement& element) {
     const auto* flakes = std::get_if<FlakesValues>(&element);
     return flakes ? flakes->coverage : 1.0;

@@ -1,6 +1,7 @@
 #include "host/layers/walk/walk.h"
 
 #include "host/layers/walk/walk_connector.h"
+#include "kernels/scatter/henyey_greenstein.h"
 #include "kernels/scatter/oren_nayar.h"
 
 #include <algorithm>
@@ -256,11 +257,12 @@ private:
             const double c = std::max(std::fabs(visit.d.z), 1e-300);
             const double depth = visit.d.z < 0.0 ? z : 1.0 - z;
             const double phase =
-                henyey_greenstein(slab.anisotropy, -kernels::vec3_dot(d_, visit.d));
+                kernels::henyey_greenstein_phase(slab.anisotropy, -kernels::vec3_dot(d_, visit.d));
             score(k, visit.weight * (-(slab.tau + slab.tau_scattering) * (depth / c)).exp() *
                          (phase / (c * slab.ior * slab.ior)));
         });
-        d_ = sample_henyey_greenstein(slab.anisotropy, d_, random_);
+        const double u1 = random_.next(), u2 = random_.next();
+        d_ = kernels::henyey_greenstein_sample(d_, slab.anisotropy, u1, u2);
     }
 
     void meet_diffuse() {

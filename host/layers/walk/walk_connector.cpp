@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace reradiant {
 
@@ -118,27 +117,6 @@ private:
 WalkConnector connect_down(const WalkElements& elements, const Vec3& wo, Eigen::Index bands,
                            WalkRandom& random) {
     return Descent(elements, wo, bands, random).run();
-}
-
-double henyey_greenstein(double g, double mu) {
-    const double distance2 = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - mu);
-    return (1.0 - g) * (1.0 + g) * 0.25 * std::numbers::inv_pi / (distance2 * std::sqrt(distance2));
-}
-
-Vec3 sample_henyey_greenstein(double g, const Vec3& d, WalkRandom& random) {
-    // the inverse of the distribution function, multiplied out: no division by g
-    const double t = 2.0 * random.next() - 1.0, q = 1.0 + g * t;
-    const double top = t + g * (0.5 * (t * t + 3.0) + g * (t + 0.5 * g * (t * t - 1.0)));
-    const double mu = std::clamp(top / (q * q), -1.0, 1.0);
-    const double s = std::sqrt((1.0 - mu) * (1.0 + mu));
-    const double phi = 2.0 * std::numbers::pi * random.next();
-    const Vec3 axis =
-        std::fabs(d.z) < 0.9 ? kernels::vec3(0.0, 0.0, 1.0) : kernels::vec3(1.0, 0.0, 0.0);
-    const Vec3 x = kernels::vec3_normalise(kernels::vec3_cross(axis, d));
-    const Vec3 y = kernels::vec3_cross(d, x);
-    return kernels::vec3_normalise(kernels::vec3_add(
-        kernels::vec3_scale(d, mu), kernels::vec3_add(kernels::vec3_scale(x, s * std::cos(phi)),
-                                                      kernels::vec3_scale(y, s * std::sin(phi)))));
 }
 
 double roulette(double weight, WalkRandom& random) {

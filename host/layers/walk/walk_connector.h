@@ -29,12 +29,6 @@ struct WalkConnector {
 WalkConnector connect_down(const WalkElements& elements, const kernels::Vec3& wo,
                            Eigen::Index bands, WalkRandom& random);
 
-/// Returns the phase function of Henyey and Greenstein 1941, 1/sr, with mean cosine g, at the
-/// cosine mu of the angle of deflection.
-double henyey_greenstein(double g, double mu);
-/// Returns a direction scattered out of d, sampled with the density henyey_greenstein.
-kernels::Vec3 sample_henyey_greenstein(double g, const kernels::Vec3& d, WalkRandom& random);
-
 /// These convert directions of travel into the frame of one side of a surface
 /// (host/layers/walk/walk_surface.h): `arriving` into that of the side that a path arrives at,
 /// pointing back, and `leaving` from that of the side on which it leaves.

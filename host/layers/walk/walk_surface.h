@@ -2,7 +2,7 @@
 
 #include "host/layers/rough/lost_flux.h"
 #include "host/layers/walk/walk_random.h"
-#include "kernels/core/portable.h"
+#include "kernels/walk/walk_facets.h"
 #include "reradiant/stack_elements.h"
 
 #include <memory>
@@ -23,6 +23,8 @@ struct WalkSurface : SurfaceValues {
     }
     /// Returns the reflectance (unit 1) of a facet at cos_i >= 0.
     double reflectance(bool from_below, double cos_i) const;
+    /// Returns what the kernels' functions need of the facets that are seen from one side.
+    kernels::WalkSurface facets(bool from_below) const;
 };
 
 WalkSurface walk_surface(const SurfaceValues& surface);

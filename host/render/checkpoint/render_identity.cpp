@@ -35,8 +35,9 @@ const std::string& build_digest() {
         Sha256 sha;
         sha.update(whole_file("/proc/self/exe"));
         std::vector<fs::path> kernels;
-        for (const auto& entry : fs::directory_iterator(data_directory() / "kernels"))
-            kernels.push_back(entry.path());
+        for (const auto& entry : fs::recursive_directory_iterator(data_directory() / "kernels"))
+            if (entry.is_regular_file())
+                kernels.push_back(entry.path());
         std::sort(kernels.begin(), kernels.end());
         for (const fs::path& kernel : kernels)
             sha.update(whole_file(kernel));

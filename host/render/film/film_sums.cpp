@@ -29,10 +29,17 @@ double luminance_variance(const FilmStrip& strip, std::size_t pixel, double n) {
 
 } // namespace
 
-FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool force_scatter) {
+FilmLayout film_shape(const WavelengthPlan& plan, bool band_variance, bool force_scatter) {
     FilmLayout layout;
     layout.band_variance = band_variance;
     layout.scatter = force_scatter || band_variance || !plan.deposits_are_fixed();
+    layout.lanes =
+        layout.scatter ? (plan.film.count + WIDTH - 1) / WIDTH * WIDTH : plan.padded_lanes();
+    return layout;
+}
+
+FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool force_scatter) {
+    FilmLayout layout = film_shape(plan, band_variance, force_scatter);
     const int padded = plan.padded_lanes();
     const auto lanes = static_cast<int>(plan.lanes.size());
     for (int phase = 0; phase < plan.phases; ++phase)
@@ -44,11 +51,9 @@ FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool forc
             layout.lane_weights.push_back(static_cast<float>(deposit.next_weight));
         }
     if (layout.scatter) {
-        layout.lanes = (plan.film.count + WIDTH - 1) / WIDTH * WIDTH;
         for (int band = 0; band < plan.film.count; ++band)
             layout.columns.push_back({band, 1.0, 0.0});
     } else {
-        layout.lanes = padded;
         for (int lane = 0; lane < lanes; ++lane)
             layout.columns.push_back(plan.deposit(lane, 0));
     }

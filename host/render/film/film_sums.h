@@ -30,6 +30,8 @@ struct FilmLayout {
 };
 constexpr std::size_t film_statistics_per_pixel = FILM_STATISTICS;
 
+/// How the sums are kept, and how many columns there are; nothing that is stored by lane.
+FilmLayout film_shape(const WavelengthPlan& plan, bool band_variance, bool force_scatter);
 FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool force_scatter);
 
 /// Sums of all samples of successive pixels, where the device keeps them.

@@ -8,16 +8,13 @@
 
 namespace reradiant {
 
-/// `RenderFeatures` says what a scene needs of the kernels: one bit each in
-/// kernels/core/features.h, and the sizes that are compiled in. Everything else is an argument of
-/// the kernels.
+/// `RenderFeatures` says what a scene needs of the kernels: one bit for each of
+/// kernels/core/feature_bits.h, and the sizes that are compiled in. Everything else is an argument
+/// of the kernels.
 struct RenderFeatures {
-    bool fluorescence = false, dense_matrix = false, spectral_stack = false, dispersion = false;
-    bool smooth = false, rough = false, deeper_lobes = false, weidlich_wilkie = false;
-    bool area_lights = false, delta_lights = false, environment = false, lens = false;
-    bool tabulated_reflectance = false, scattering_slabs = false, oren_nayar = false, walk = false;
-    bool environment_image = false, textures = false, reflectance_image = false;
-    bool scatter = false, band_variance = false;
+#define FEATURE_BIT(name, why_off) bool name = false;
+#include "kernels/core/feature_bits.h"
+#undef FEATURE_BIT
     int chunks = 1, film_chunks = 1, lobes = 0;
     int hero = 0;           ///< wavelengths of a path's set; 0: all lanes
     int walk_layers = 1;    ///< most layers of a material that is walked through
@@ -26,6 +23,21 @@ struct RenderFeatures {
     static RenderFeatures all();
     /// All bits off but one; std::invalid_argument lists the names when there is none such.
     static RenderFeatures only(const std::string& name);
+
+    /// Adds what `other` needs: its bits, and its lobes and layers where they are more.
+    void add(const RenderFeatures& other);
+    /// True when paths may end with light that they meet: they then have a vertex more.
+    bool has_emitters_to_meet() const {
+        return area_lights || environment || environment_image;
+    }
+    bool samples_lights() const {
+        return area_lights || delta_lights || environment_image;
+    }
+    /// True when images colour lights or reflectances, so that vertices keep colours.
+    bool has_colours() const {
+        return environment_image || reflectance_image;
+    }
+
     KernelDefines defines() const;
     /// Name to on/off, for the statistics.
     std::map<std::string, bool> listed() const;

@@ -3,6 +3,7 @@
 #include "kernels/core/shared.h"
 #include "reradiant/scene.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace reradiant {
@@ -12,6 +13,13 @@ namespace reradiant {
 /// times the sine of its polar angle. `light` is not filled in.
 EnvironmentRecord append_environment_image(const Image& image, double rotation_deg,
                                            std::vector<float>& tables);
+
+/// Floats that append_environment_image appends.
+inline std::uint64_t environment_image_floats(const Image& image) {
+    const auto width = static_cast<std::uint64_t>(image.width),
+               height = static_cast<std::uint64_t>(image.height);
+    return (3 + 1 + 1) * width * height + height; // colours, density, conditional; marginal
+}
 
 /// Mean of red, green and blue over the sphere.
 double mean_over_sphere(const Image& image);

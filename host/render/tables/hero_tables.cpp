@@ -1,10 +1,5 @@
 #include "host/render/tables/hero_tables.h"
 
-#include "kernels/core/features.h"
-#include "reradiant/error.h"
-
-#include <fmt/core.h>
-
 #include <algorithm>
 
 namespace reradiant {
@@ -99,21 +94,12 @@ private:
 
 } // namespace
 
-void append_hero(const Scene& scene, const WavelengthPlan& plan, SceneTables& tables) {
+void append_hero(const WavelengthPlan& plan, SceneTables& tables) {
     ShiftTables shifts(plan, tables);
-    for (std::size_t i = 0; i < tables.materials.size(); ++i) {
-        MaterialRecord& material = tables.materials[i];
-        if (material.walk != NO_INDEX)
-            throw_input_error(
-                scene.materials[i].position,
-                fmt::format("material '{}' is walked through, which --wavelengths hero cannot do",
-                            scene.materials[i].name),
-                "take --wavelengths comb, or --model adding or weidlich-wilkie");
+    for (MaterialRecord& material : tables.materials) {
         const bool shifting = material.rank > 0 || material.dense != NO_INDEX;
         material.shift = shifting ? shifts.append(material) : NO_INDEX;
     }
-    tables.features.hero = plan.hero;
-    tables.features.walk = false;
 }
 
 } // namespace reradiant

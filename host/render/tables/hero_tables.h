@@ -11,8 +11,7 @@ constexpr int hero_width(int hero) {
 
 /// Appends to every material that re-radiates the probabilities with which `hero` samples an
 /// excitation, emission given, [phase][emission lane][excitation lane], cumulative, and sets
-/// MaterialRecord::shift. After materials and lights. Input Error for a material that is walked
-/// through: a walk meets its substrate several times.
-void append_hero(const Scene& scene, const WavelengthPlan& plan, SceneTables& tables);
+/// MaterialRecord::shift. After materials and lights. No material may be walked through.
+void append_hero(const WavelengthPlan& plan, SceneTables& tables);
 
 } // namespace reradiant

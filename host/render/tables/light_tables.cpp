@@ -1,6 +1,5 @@
 #include "host/render/tables/environment_tables.h"
 #include "host/render/tables/scene_tables.h"
-#include "host/spectral/colour/rgb_basis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,43 +76,6 @@ struct DescribeLight {
     }
 };
 
-/// Lanes of a light's spectrum: sub-cell means on the comb (so that no power is lost between
-/// phases), values at the centres with a single phase; a line's power on its own lanes.
-double lane_value(const Spectrum& spectrum, const Spectrum& on_comb, const WavelengthPlan& plan,
-                  int lane, int phase) {
-    const auto [from, to] = plan.interval_nm(lane, phase);
-    if (!plan.lanes[static_cast<std::size_t>(lane)].is_line)
-        return plan.phases == 1 ? on_comb(plan.wavelength_nm(lane, phase))
-                                : on_comb.average(from, to);
-    double power = 0.0;
-    for (const SpectralLine& line : spectrum.lines())
-        if (plan.stands_apart(line) &&
-            std::abs(0.5 * (from + to) - line.centre_nm) < 0.5 * line.width_nm)
-            power += line.integral * (to - from) / line.width_nm;
-    return power;
-}
-
-/// Appends [phase][lane] of a spectrum times a smooth factor; returns the mean value over lanes.
-double append_spectrum(const Spectrum& spectrum, const Spectrum& factor, const WavelengthPlan& plan,
-                       std::vector<float>& tables) {
-    Spectrum on_comb = spectrum.without_lines();
-    for (const SpectralLine& line : spectrum.lines())
-        if (!plan.stands_apart(line))
-            on_comb += Spectrum::line(line.centre_nm, line.width_nm, line.integral);
-    const int lanes = static_cast<int>(plan.lanes.size());
-    double sum = 0.0;
-    for (int phase = 0; phase < plan.phases; ++phase)
-        for (int lane = 0; lane < plan.padded_lanes(); ++lane) {
-            const double value = lane < lanes ? lane_value(spectrum, on_comb, plan, lane, phase) *
-                                                    factor(plan.wavelength_nm(lane, phase))
-                                              : 0.0;
-            tables.push_back(narrow(value));
-            const bool is_line = lane < lanes && plan.lanes[static_cast<std::size_t>(lane)].is_line;
-            sum += is_line ? value / plan.comb.step_nm : value;
-        }
-    return sum / (plan.phases * plan.comb.count);
-}
-
 /// Half by power, half evenly: a dim light close by must not be missed.
 void set_selection(std::vector<LightRecord>& lights, const std::vector<double>& powers) {
     double total = 0.0;
@@ -133,68 +95,28 @@ void set_selection(std::vector<LightRecord>& lights, const std::vector<double>& 
 
 } // namespace
 
-namespace {
-
-/// The image's spectra: what its red, green and blue stand for, [3][phase][lane]; returns their
-/// mean over lanes and colours.
-double append_image_spectra(const EnvironmentLight& sky, const WavelengthPlan& plan,
-                            std::vector<float>& tables) {
-    double mean = 0.0;
-    for (const Spectrum& primary : rgb_basis())
-        mean += append_spectrum(sky.radiance, primary, plan, tables) / 3.0;
-    return mean;
-}
-
-/// Mean of each light's spectrum, its tables appended. Constant environments are one: the first
-/// holds their sum.
-double append_light_spectrum(const Scene& scene, const Light& light, const WavelengthPlan& plan,
-                             SceneTables& tables) {
-    const Spectrum one = Spectrum::constant(1.0);
-    const auto* sky = std::get_if<EnvironmentLight>(&light);
-    if (sky == nullptr)
-        return append_spectrum(light_spectrum(light), one, plan, tables.tables);
-    const auto index = static_cast<std::uint32_t>(tables.lights.size());
-    if (sky->image >= 0) {
-        const Image& image = scene.images[static_cast<std::size_t>(sky->image)];
-        if (!(mean_over_sphere(image) > 0.0))
-            return 0.0; // black: nothing to sample
-        const double mean = append_image_spectra(*sky, plan, tables.tables);
-        tables.image = append_environment_image(image, sky->rotation_deg, tables.tables);
-        tables.image.light = index;
-        tables.features.environment_image = true;
-        return mean * mean_over_sphere(image);
-    }
-    Spectrum sum;
-    for (const Light& other : scene.lights)
-        if (const auto* constant = std::get_if<EnvironmentLight>(&other);
-            constant && constant->image < 0)
-            sum += constant->radiance;
-    const double mean = append_spectrum(sum, one, plan, tables.tables);
-    if (tables.environment == NO_INDEX && mean > 0.0)
-        tables.environment = index;
-    return mean;
-}
-
-} // namespace
-
-void append_lights(const Scene& scene, const WavelengthPlan& plan, SceneTables& tables) {
+void append_lights(const Scene& scene, const LightPlan& plan, SceneTables& tables) {
     std::vector<double> powers;
-    for (const Light& light : scene.lights) {
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const LightSpectrum& spectrum = plan.lights[i];
         LightRecord record{};
-        const double factor = std::visit(DescribeLight{record}, light);
+        powers.push_back(std::visit(DescribeLight{record}, scene.lights[i]) * spectrum.mean);
         record.spectrum = static_cast<std::uint32_t>(tables.tables.size());
-        powers.push_back(factor * append_light_spectrum(scene, light, plan, tables));
-        tables.features.area_lights |=
-            record.type == LIGHT_RECTANGLE || record.type == LIGHT_SPHERE;
-        tables.features.delta_lights |=
-            record.type == LIGHT_POINT || record.type == LIGHT_DIRECTIONAL;
+        tables.tables.insert(tables.tables.end(), spectrum.lanes.begin(), spectrum.lanes.end());
+        const auto* sky = std::get_if<EnvironmentLight>(&scene.lights[i]);
+        if (sky != nullptr && sky->image >= 0 && !spectrum.lanes.empty()) {
+            tables.image =
+                append_environment_image(scene.images[static_cast<std::size_t>(sky->image)],
+                                         sky->rotation_deg, tables.tables);
+            tables.image.light = static_cast<std::uint32_t>(i);
+        }
         tables.lights.push_back(record);
     }
     set_selection(tables.lights, powers);
     for (std::size_t i = 0; i < powers.size(); ++i)
         if (powers[i] > 0.0)
             tables.sampled_lights = static_cast<std::uint32_t>(i + 1);
-    tables.features.environment |= tables.environment != NO_INDEX;
+    tables.environment = plan.environment;
 }
 
 CameraRecord camera_record(const Camera& camera, const FilmSettings& film) {

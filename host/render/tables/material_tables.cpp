@@ -1,7 +1,9 @@
+#include "host/render/tables/scene_tables.h"
+
 #include "host/layers/models/weidlich_wilkie_bsdf.h"
 #include "host/layers/rough/facet_reflectance.h"
+#include "host/render/plan/material_plan.h"
 #include "host/render/tables/choice_tables.h"
-#include "host/render/tables/scene_tables.h"
 #include "host/render/tables/substrate_tables.h"
 #include "host/scene/model/closed_model.h"
 
@@ -18,32 +20,28 @@ namespace {
 /// Builds one material's records and tables.
 class MaterialTables {
 public:
-    MaterialTables(const Material& material, Model model, const WavelengthPlan& plan, int lobes,
-                   SceneTables& out)
-        : material_(material), model_(model), lobes_(lobes), out_(out), lanes_(plan, out.tables),
-          optics_(material, model, plan), stack_(material_at(material, reference_nm)) {
-        for (std::size_t e = 0; e < stack_.size(); ++e)
-            if (surface_of(stack_[e]))
-                parts_.push_back(e);
-    }
+    MaterialTables(const Material& material, const MaterialPlan& plan,
+                   const WavelengthPlan& wavelengths, int lobes, SceneTables& out)
+        : material_(material), plan_(plan), lobes_(lobes), out_(out),
+          lanes_(wavelengths, out.tables), optics_(material, plan.choice.model, wavelengths),
+          stack_(material_at(material, reference_nm)), parts_(reflecting_elements(stack_)) {}
 
     void append() {
         record_.walk = NO_INDEX;
         record_.spectral = optics_.is_spectral() ? 1u : 0u;
-        out_.features.spectral_stack |= optics_.is_spectral();
         note_thick_films();
         append_layers();
-        choose_evaluation();
+        append_evaluation();
         append_lobes();
         append_stack();
-        const LaneOperator substrate =
-            append_substrate(material_, model_, optics_, lanes_, record_, out_);
+        const LaneOperator substrate = append_substrate(material_, plan_.choice.model, optics_,
+                                                        *plan_.on_cells, lanes_, record_, out_);
         record_.choice = append_choice(optics_, substrate, lobes_, lanes_);
         out_.materials.push_back(record_);
     }
 
 private:
-    bool is_model_a() const { return model_ == Model::WeidlichWilkie; }
+    bool is_model_a() const { return plan_.choice.model == Model::WeidlichWilkie; }
 
     /// A cubic between 65 nodes over the cosine's square root follows three fringes to 1 %.
     void note_thick_films() {
@@ -86,33 +84,21 @@ private:
             out_.layers.push_back(layer);
             record_.layer_count += &surface == conductor_of(stack_) ? 0u : 1u;
         }
-        const bool has_top = !parts_.empty() && part(0).alpha > 0.0;
-        record_.has_top_lobe = has_top ? 1u : 0u;
-        out_.features.rough |= has_top;
+        record_.has_top_lobe = plan_.features.rough ? 1u : 0u;
     }
 
     LayerRecord& layer_record(std::size_t p) { return out_.layers[record_.first_layer + p]; }
 
-    /// Chooses what the kernels evaluate for themselves, and whether lane by lane, and appends the
-    /// tables that they need for it.
-    void choose_evaluation() {
-        const bool nested = is_model_a() && !is_all_smooth(stack_);
-        const bool dispersive = material_.stack.is_dispersive();
-        record_.weidlich_wilkie = !nested ? 0u : dispersive ? MODEL_A_PER_LANE : MODEL_A;
-        out_.features.weidlich_wilkie |= nested;
-        if (nested && dispersive)
-            append_ior_ratios(parts_.size());
-        else if (record_.has_top_lobe != 0u && !material_.stack.layers.empty() &&
-                 !material_.stack.layers.front().ior.is_constant())
-            append_ior_ratios(1);
-        for (std::size_t p = 0; nested && p < parts_.size(); ++p)
-            if (is_tabulated(part(p)))
-                append_reflectance(p);
+    /// Appends the tables that kernels need for what they evaluate for themselves.
+    void append_evaluation() {
+        record_.weidlich_wilkie = plan_.model_a;
+        append_ior_ratios(plan_.ior_ratios);
+        for (const std::size_t p : plan_.tabulated)
+            append_reflectance(p);
     }
 
     /// IOR below over IOR above per lane, for the interfaces among the first `count` parts.
     void append_ior_ratios(std::size_t count) {
-        out_.features.dispersion = true;
         for (std::size_t p = 0; p < count; ++p)
             layer_record(p).eta_lanes = lanes_.append_lanes([&](int phase, int lane) {
                 if (part(p).is_conductor)
@@ -127,13 +113,7 @@ private:
         return material_at(material_, lanes_.plan().wavelength_nm(lane, phase));
     }
 
-    /// Fresnel's bare dielectric is the only reflectance that kernels know by themselves.
-    static bool is_tabulated(const SurfaceValues& surface) {
-        return surface.is_conductor || surface.has_film();
-    }
-
     void append_reflectance(std::size_t p) {
-        out_.features.tabulated_reflectance = true;
         layer_record(p).reflectance =
             lanes_.append_nodes_of_lanes([&](double cosine, int phase, int lane) {
                 return facet_reflectance(*surface_of(stack_in(phase, lane)[parts_[p]]), cosine);
@@ -157,8 +137,6 @@ private:
             }
             out_.lobes.push_back(lobe);
         }
-        out_.features.deeper_lobes |= !lobes.empty();
-        out_.features.scattering_slabs |= material_.stack.scatters();
     }
 
     /// [2][phase][lane]: optical depth, then the share of it that scatters.
@@ -175,8 +153,6 @@ private:
         return offset;
     }
 
-    using AngularValue = double (StackBsdf::*)(double) const;
-
     /// [node] for a stack whose optics are grey, [phase][node][lane] for a spectral one.
     std::uint32_t append_nodes(const std::function<double(const StackBsdf&, double)>& value) {
         if (!optics_.is_spectral())
@@ -185,15 +161,11 @@ private:
             [&](double c, int phase, int lane) { return value(optics_.at(phase, lane), c); });
     }
 
-    std::uint32_t append_if_positive(AngularValue value) {
-        return optics_.is_ever_positive(value) ? append_nodes(value) : NO_INDEX;
-    }
-
     void append_stack() {
         record_.transmission = append_nodes(&StackBsdf::transmission);
-        record_.delta = append_if_positive(&StackBsdf::delta);
-        out_.features.smooth |= record_.delta != NO_INDEX;
-        record_.residual = append_if_positive(&StackBsdf::residual_amplitude);
+        record_.delta = plan_.has_delta ? append_nodes(&StackBsdf::delta) : NO_INDEX;
+        record_.residual =
+            plan_.has_residual ? append_nodes(&StackBsdf::residual_amplitude) : NO_INDEX;
         record_.amplitude = NO_INDEX;
         for (std::uint32_t l = 0; l < record_.lobe_count; ++l) {
             const std::uint32_t offset = append_nodes([l](const StackBsdf& o, double c) {
@@ -205,7 +177,7 @@ private:
     }
 
     const Material& material_;
-    Model model_;
+    const MaterialPlan& plan_;
     int lobes_;
     SceneTables& out_;
     LaneTables lanes_;
@@ -217,9 +189,9 @@ private:
 
 } // namespace
 
-void append_material(const Material& material, Model model, const WavelengthPlan& plan, int lobes,
-                     SceneTables& tables) {
-    MaterialTables(material, model, plan, lobes, tables).append();
+void append_material(const Material& material, const MaterialPlan& plan,
+                     const WavelengthPlan& wavelengths, int lobes, SceneTables& tables) {
+    MaterialTables(material, plan, wavelengths, lobes, tables).append();
 }
 
 } // namespace reradiant

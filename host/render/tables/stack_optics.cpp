@@ -25,15 +25,14 @@ int adding_lobe_count(const LayerStack& stack) {
     return count;
 }
 
-/// Returns true when something that the tables by the angle hold depends on wavelength.
+} // namespace
+
 bool depends_on_wavelength(const Material& material) {
     const Conductor& metal = material.substrate.conductor;
     return !material.stack.is_constant() ||
            (material.substrate.type == SubstrateType::Conductor &&
             !(metal.ior.is_constant() && metal.kappa.is_constant() && !metal.film));
 }
-
-} // namespace
 
 int deeper_lobe_count(const Material& material, Model model) {
     if (model != Model::WeidlichWilkie)
@@ -51,14 +50,6 @@ MaterialOptics::MaterialOptics(const Material& material, Model model, const Wave
         optics_[static_cast<std::size_t>(i)] =
             closed_model(model)(material_at(material, wavelength));
     });
-}
-
-bool MaterialOptics::is_ever_positive(double (StackBsdf::*value)(double) const) const {
-    for (const auto& optics : optics_)
-        for (int node = 0; node < TABLE_NODES; ++node)
-            if ((optics.get()->*value)(node_cosine(node)) > 0.0)
-                return true;
-    return false;
 }
 
 } // namespace reradiant

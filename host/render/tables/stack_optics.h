@@ -23,15 +23,15 @@ public:
         return *optics_[spectral_ ? static_cast<std::size_t>(phase * lanes_ + lane) : 0];
     }
     const StackBsdf& any() const { return *optics_.front(); }
-    /// Returns true when `value` is above 0 at some node of the tables by the angle, at any
-    /// wavelength.
-    bool is_ever_positive(double (StackBsdf::*value)(double) const) const;
 
 private:
     bool spectral_;
     int lanes_;
     std::vector<std::shared_ptr<const StackBsdf>> optics_;
 };
+
+/// Returns true when something that the tables by the angle hold depends on wavelength.
+bool depends_on_wavelength(const Material& material);
 
 /// Number of deeper rough lobes that a material can have under a model.
 int deeper_lobe_count(const Material& material, Model model);

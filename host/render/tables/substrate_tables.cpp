@@ -13,9 +13,10 @@ namespace {
 class SubstrateTables {
 public:
     SubstrateTables(const Material& material, Model model, const MaterialOptics& optics,
-                    LaneTables& lanes, MaterialRecord& record, SceneTables& out)
-        : substrate_(material.substrate), name_(material.name), optics_(optics), lanes_(lanes),
-          record_(record), out_(out),
+                    const SubstrateOnCells& on_cells, LaneTables& lanes, MaterialRecord& record,
+                    SceneTables& out)
+        : substrate_(material.substrate), name_(material.name), optics_(optics),
+          on_cells_(on_cells), lanes_(lanes), record_(record), out_(out),
           sigma_(substrate_.type == SubstrateType::OrenNayar ? substrate_.sigma : 0.0),
           // the first bounce stands apart where light comes back to the substrate
           has_first_(sigma_ > 0.0 && model == Model::Adding && !material.stack.layers.empty()),
@@ -28,7 +29,6 @@ public:
         record_.first_diagonal = record_.first_factors = record_.first_dense = NO_INDEX;
         record_.reflectance_image = record_.image_reflectance = NO_INDEX;
         record_.rank = 0;
-        out_.features.oren_nayar |= sigma_ > 0.0;
         if (substrate_.type == SubstrateType::Conductor) {
             record_.diagonal = lanes_.append_lanes([](int, int) { return 0.0; });
             LaneOperator black;
@@ -36,7 +36,6 @@ public:
             return black;
         }
         set_feedback();
-        on_cells_ = substrate_on_cells(substrate_, lanes_.plan().comb);
         if (substrate_.reflectance_image >= 0) {
             append_image();
             return operator_at(middle, mean_albedo_, true);
@@ -119,7 +118,6 @@ private:
     /// A reflectance that an image colours is put together by the kernel: the diagonal holds the
     /// factor of the substrate's operator alone.
     void append_image() {
-        out_.features.reflectance_image = true;
         record_.reflectance_image = static_cast<std::uint32_t>(substrate_.reflectance_image);
         record_.diagonal = lanes_.append_lanes(
             [&](int phase, int lane) { return optics_.at(phase, lane).diffuse_scale(); });
@@ -137,7 +135,6 @@ private:
     void note_fluorescence(const LaneOperator& op) {
         if (on_cells_.fluorescence.size() == 0)
             return;
-        out_.features.fluorescence = true;
         if (on_cells_.is_factored()) {
             out_.notes.push_back(fmt::format(
                 "material '{}': re-radiation as a sum of {} products of an emission and an "
@@ -145,7 +142,6 @@ private:
                 name_, op.emission.cols()));
             return;
         }
-        out_.features.dense_matrix = true;
         out_.notes.push_back(fmt::format("material '{}': re-radiation entry by entry, as it is no "
                                          "sum of few products or holds anti-Stokes emission",
                                          name_));
@@ -154,21 +150,22 @@ private:
     const Substrate& substrate_;
     const std::string& name_;
     const MaterialOptics& optics_;
+    const SubstrateOnCells& on_cells_;
     LaneTables& lanes_;
     MaterialRecord& record_;
     SceneTables& out_;
     double sigma_;
     bool has_first_;
-    double mean_albedo_; ///< Em of oren_nayar_substrate.h where the first bounce stands apart
-    SubstrateOnCells on_cells_;
+    double mean_albedo_;       ///< Em of oren_nayar_substrate.h where the first bounce stands apart
     Eigen::MatrixXd feedback_; ///< r, (lanes, phases)
 };
 
 } // namespace
 
 LaneOperator append_substrate(const Material& material, Model model, const MaterialOptics& optics,
-                              LaneTables& lanes, MaterialRecord& record, SceneTables& out) {
-    return SubstrateTables(material, model, optics, lanes, record, out).append();
+                              const SubstrateOnCells& on_cells, LaneTables& lanes,
+                              MaterialRecord& record, SceneTables& out) {
+    return SubstrateTables(material, model, optics, on_cells, lanes, record, out).append();
 }
 
 } // namespace reradiant

@@ -6,10 +6,11 @@
 
 namespace reradiant {
 
-/// Appends the operator of a material's substrate under its stack and sets its offsets in the
-/// record, features and notes. Returns the operator at the middle phase, for choosing among
+/// Appends the operator of a material's substrate, `on_cells`, under its stack and sets its offsets
+/// in the record and the notes. Returns the operator at the middle phase, for choosing among
 /// components.
 LaneOperator append_substrate(const Material& material, Model model, const MaterialOptics& optics,
-                              LaneTables& lanes, MaterialRecord& record, SceneTables& out);
+                              const SubstrateOnCells& on_cells, LaneTables& lanes,
+                              MaterialRecord& record, SceneTables& out);
 
 } // namespace reradiant

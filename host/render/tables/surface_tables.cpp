@@ -1,6 +1,5 @@
 #include "host/render/tables/scene_tables.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -61,15 +60,9 @@ SurfaceRecord surface_record(const Surface& surface) {
     return record;
 }
 
-bool is_plain(const Surface& surface) {
-    return surface.textures.empty() && surface.normal_texture < 0 && surface.mixed_with < 0;
-}
-
 } // namespace
 
 void append_surfaces(const Scene& scene, SceneTables& tables) {
-    if (!std::all_of(scene.surfaces.begin(), scene.surfaces.end(), is_plain))
-        tables.features.textures = true;
     std::vector<std::uint32_t> image_offsets(scene.images.size(), NO_INDEX);
     for (const Texture& texture : scene.textures) {
         if (texture.image < 0)

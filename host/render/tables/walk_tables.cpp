@@ -2,12 +2,9 @@
 
 #include "host/layers/rough/facet_reflectance.h"
 #include "host/layers/walk/walk_surface.h"
+#include "host/render/plan/material_plan.h"
 #include "host/render/tables/substrate_tables.h"
 #include "host/scene/model/closed_model.h"
-#include "host/scene/model/model_choice.h"
-#include "reradiant/error.h"
-
-#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,13 +19,6 @@ namespace {
 /// where a lane's is smaller still, weights bounded by WALK_REFERENCES make up for it.
 constexpr double least_reference = 1e-3;
 
-void check_material(const Material& material) {
-    if (const std::optional<std::string> refusal = device_walk_refusal(material))
-        throw_input_error(material.position,
-                          fmt::format("material '{}': {}", material.name, *refusal),
-                          "use weidlich-wilkie or adding, or measure the material by walk");
-}
-
 /// A surface of a stack, or of its substrate; nothing beneath it yet.
 WalkPartRecord surface_part(const SurfaceValues& surface) {
     WalkPartRecord part{};
@@ -41,13 +31,6 @@ WalkPartRecord surface_part(const SurfaceValues& surface) {
     part.extinction = part.scattering = part.flakes = NO_INDEX;
     return part;
 }
-
-/// A slab's optical depths at normal passage, all phases and lanes.
-struct SlabDepths {
-    std::vector<double> absorption, scattering;
-
-    double extinction(std::size_t i) const { return absorption[i] + scattering[i]; }
-};
 
 /// Extinctions in equal ratios from the smallest lane's to the largest's, and the largest albedo.
 void set_references(const SlabDepths& depths, WalkPartRecord& part) {
@@ -69,12 +52,14 @@ void set_references(const SlabDepths& depths, WalkPartRecord& part) {
 
 class WalkTables {
 public:
-    WalkTables(const Material& material, const WavelengthPlan& plan, SceneTables& out)
-        : material_(material), stack_(material_at(material, reference_nm)), out_(out),
-          lanes_(plan, out.tables) {
+    WalkTables(const Material& material, const MaterialPlan& plan,
+               const WavelengthPlan& wavelengths, SceneTables& out)
+        : material_(material), plan_(plan), stack_(material_at(material, reference_nm)), out_(out),
+          lanes_(wavelengths, out.tables) {
         for (int phase = 0; phase < lanes_.phases(); ++phase)
             for (int lane = 0; lane < lanes_.lanes(); ++lane)
-                lane_stacks_.push_back(material_at(material, plan.wavelength_nm(lane, phase)));
+                lane_stacks_.push_back(
+                    material_at(material, wavelengths.wavelength_nm(lane, phase)));
     }
 
     void append() {
@@ -83,14 +68,12 @@ public:
         for (std::size_t e = 0; e < end; ++e) {
             if (const auto* interface = std::get_if<SurfaceValues>(&stack_[e]))
                 append_interface(*interface);
-            else if (std::holds_alternative<SlabValues>(stack_[e]))
-                append_slab(e, out_.walk_parts.back());
+            else if (const auto* slab = std::get_if<SlabValues>(&stack_[e]))
+                append_slab(plan_.slabs[record_.layer_count - 1], slab->anisotropy,
+                            out_.walk_parts.back());
         }
         append_substrate_part();
         append_flakes();
-        out_.features.walk = true;
-        out_.features.walk_layers =
-            std::max(out_.features.walk_layers, static_cast<int>(record_.layer_count));
         out_.materials.push_back(record_);
     }
 
@@ -108,48 +91,26 @@ private:
             part.cavities = append_cavities(*flux);
     }
 
-    /// The table that kernels/walk/walk_cavities.h reads.
     std::uint32_t append_cavities(const LostFlux& flux) {
         const std::uint32_t offset = lanes_.here();
-        const auto append_all = [this](const std::vector<double>& values) {
-            for (const double value : values)
-                lanes_.append(value);
-        };
-        const std::vector<LostFlux::Cells>& sides = flux.sides();
-        for (std::size_t side = 0; side < 2; ++side)
-            lanes_.append(side < sides.size() ? static_cast<double>(sides[side].lost.size()) : 0.0);
-        lanes_.append(flux.cumulative().back());
-        for (const LostFlux::Cells& cells : sides) {
-            append_all(cells.edges);
-            append_all(cells.lost);
-        }
-        append_all(flux.cumulative());
+        for (const double value : flux.table())
+            lanes_.append(value);
         return offset;
     }
 
     /// The slab's, in the part of the interface above it.
-    void append_slab(std::size_t element, WalkPartRecord& part) {
-        SlabDepths depths;
-        for (const StackElements& stack : lane_stacks_) {
-            const SlabValues& slab = std::get<SlabValues>(stack[element]);
-            depths.absorption.push_back(slab.tau);
-            depths.scattering.push_back(slab.tau_scattering);
-        }
-        const auto& [absorption, scattering] = depths;
-        const bool absorbs = *std::max_element(absorption.begin(), absorption.end()) > 0.0;
-        const bool scatters = *std::max_element(scattering.begin(), scattering.end()) > 0.0;
-        if (!absorbs && !scatters)
+    void append_slab(const SlabDepths& depths, double anisotropy, WalkPartRecord& part) {
+        if (!depths.absorbs() && !depths.scatters())
             return;
-        part.least_depth =
-            static_cast<float>(*std::min_element(absorption.begin(), absorption.end()));
+        part.least_depth = static_cast<float>(
+            *std::min_element(depths.absorption.begin(), depths.absorption.end()));
         part.extinction = lanes_.append_lanes(
             [&](int phase, int lane) { return depths.extinction(index(phase, lane)); });
-        if (!scatters)
+        if (!depths.scatters())
             return;
-        out_.features.scattering_slabs = true;
         part.scattering = lanes_.append_lanes(
             [&](int phase, int lane) { return depths.scattering[index(phase, lane)]; });
-        part.anisotropy = static_cast<float>(std::get<SlabValues>(stack_[element]).anisotropy);
+        part.anisotropy = static_cast<float>(anisotropy);
         set_references(depths, part);
     }
 
@@ -159,7 +120,7 @@ private:
         bare.stack.layers.clear();
         const MaterialOptics nothing(Material{}, Model::Adding, lanes_.plan());
         const LaneOperator middle =
-            append_substrate(bare, Model::Adding, nothing, lanes_, record_, out_);
+            append_substrate(bare, Model::Adding, nothing, *plan_.on_cells, lanes_, record_, out_);
         if (conductor_of(stack_)) {
             append_conductor(stack_.size() - 1);
             return;
@@ -190,7 +151,6 @@ private:
                 return walk_surface(surface(phase, lane)).lost_reflectance;
             });
         }
-        out_.features.tabulated_reflectance = true;
         out_.walk_parts.push_back(part);
     }
 
@@ -210,6 +170,7 @@ private:
     }
 
     const Material& material_;
+    const MaterialPlan& plan_;
     StackElements stack_; ///< at the reference wavelength
     SceneTables& out_;
     LaneTables lanes_;
@@ -219,10 +180,9 @@ private:
 
 } // namespace
 
-void append_walk_material(const Material& material, const WavelengthPlan& plan,
-                          SceneTables& tables) {
-    check_material(material);
-    WalkTables(material, plan, tables).append();
+void append_walk_material(const Material& material, const MaterialPlan& plan,
+                          const WavelengthPlan& wavelengths, SceneTables& tables) {
+    WalkTables(material, plan, wavelengths, tables).append();
 }
 
 } // namespace reradiant

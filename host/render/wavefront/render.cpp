@@ -49,7 +49,7 @@ std::vector<AdaptiveGroup> adaptive_pass(RenderRun& rendering, const Scene& scen
 std::uint32_t render_pass(RenderRun& rendering, const Scene& scene, const RenderOptions& options) {
     const std::uint32_t done = rendering.state().samples;
     const std::uint32_t even =
-        options.adaptive ? samples_before_adapting(rendering.plan()) : options.samples;
+        options.adaptive ? samples_before_adapting(rendering.plan().wavelengths) : options.samples;
     if (done < even) {
         const std::uint32_t samples = std::min(next_pass(rendering.state(), options), even - done);
         rendering.wavefront().render_pass(options.first_sample + done, samples);

@@ -1,9 +1,6 @@
 #include "host/render/wavefront/render_run.h"
 
-#include "host/device/opencl_device.h"
 #include "host/render/film/error_estimate.h"
-#include "host/render/film/film_sums.h"
-#include "host/render/plan/render_memory.h"
 
 namespace reradiant {
 
@@ -13,60 +10,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-RenderResult planned(const Scene& scene, const Device& device, const RenderOptions& options) {
-    if (options.in_double)
-        check_double(device.info());
-    RenderResult result;
-    result.plan =
-        plan_wavelengths(scene, options.bands.value_or(film_bands(scene)), options.wavelengths);
-    check_render_memory(scene, result.plan, options);
-    return result;
-}
-
-SceneTables prepare_tables(const Scene& scene, const WavelengthPlan& plan,
-                           const RenderOptions& options) {
-    const RenderFeatures at_least = options.all_features ? RenderFeatures::all()
-                                    : options.also_on.empty()
-                                        ? RenderFeatures{}
-                                        : RenderFeatures::only(options.also_on);
-    SceneTables tables = build_scene_tables(scene, plan, options.model, at_least);
-    const FilmLayout layout =
-        film_layout(plan, options.band_variance || at_least.band_variance, at_least.scatter);
-    tables.features.scatter = layout.scatter;
-    tables.features.band_variance = layout.band_variance;
-    tables.features.in_double = options.in_double;
-    return tables;
-}
-
-/// The camera's numbers, and those for light and direction at the first three vertices, come from
-/// the sequence: later ones are smoothed by those before them. Variances per band are those of
-/// independent samples, so that parts of a render can be put together.
-std::uint32_t sequence_blocks(const RenderOptions& options) {
-    return options.band_variance ? 0 : 7;
-}
-
-WavefrontSettings wavefront_settings(const Scene& scene, const RenderOptions& options) {
-    return {static_cast<std::uint32_t>(scene.integrator.max_depth),
-            static_cast<std::uint32_t>(scene.integrator.min_depth),
-            options.seed,
-            options.batch_paths,
-            options.threads,
-            sequence_blocks(options),
-            options.adaptive,
-            options.hooks ? options.hooks->on_rays : RaySink{}};
-}
-
-FilmLayout film_of(const WavelengthPlan& plan, const SceneTables& tables,
-                   const RenderOptions& options) {
-    FilmLayout layout = film_layout(plan, tables.features.band_variance, tables.features.scatter);
-    layout.independent_samples = sequence_blocks(options) == 0;
-    layout.begins_odd = options.first_sample % 2 == 1;
-    return layout;
-}
-
-FilmResolver film_resolver(const FilmLayout& layout, const Scene& scene,
-                           const WavelengthPlan& plan) {
-    return {layout, scene.film.width, scene.film.height, plan.film};
+FilmResolver film_resolver(const RenderPlan& plan, const Scene& scene) {
+    return {plan.film, scene.film.width, scene.film.height, plan.wavelengths.film};
 }
 
 /// Takes the film out of the wavefront; the image needs no memory on top of it.
@@ -78,7 +23,8 @@ void finish_film(RenderResult& result, Wavefront& wavefront, FilmResolver resolv
     result.image = resolver.take();
 }
 
-void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables& tables) {
+void collect(RenderResult& result, const Wavefront& wavefront, const RenderPlan& plan,
+             const SceneTables& tables) {
     const WavefrontStatistics& statistics = wavefront.statistics();
     result.stage_seconds = {
         {"generate", statistics.generate_seconds}, {"intersect", statistics.intersect_seconds},
@@ -93,22 +39,21 @@ void collect(RenderResult& result, const Wavefront& wavefront, const SceneTables
     result.mapped_bytes = statistics.mapped_bytes;
     result.device_bytes = wavefront.device_bytes();
     result.table_bytes = tables.tables.size() * sizeof(float);
-    result.features = tables.features.listed();
-    result.left_out = tables.features.left_out();
-    result.left_out.insert(result.left_out.end(), result.plan.left_out.begin(),
-                           result.plan.left_out.end());
+    result.features = plan.features.listed();
+    result.left_out = plan.left_out();
     result.notes = tables.notes;
 }
 
 } // namespace
 
 RenderRun::RenderRun(const Scene& scene, const Device& device, const RenderOptions& options)
-    : scene_(scene), options_(options), result_(planned(scene, device, options)),
-      tables_(prepare_tables(scene, result_.plan, options)),
-      geometry_(scene, tables_.features.textures || tables_.features.reflectance_image),
-      wavefront_(device, geometry_, tables_, result_.plan, wavefront_settings(scene, options),
-                 result_.build),
-      layout_(film_of(result_.plan, tables_, options)), checkpoint_(scene, device, options) {
+    : scene_(scene), options_(options), plan_(plan_render(scene, device.info(), options)),
+      tables_(build_scene_tables(scene, plan_)),
+      geometry_(scene, plan_.features.textures || plan_.features.reflectance_image),
+      wavefront_(device, geometry_, plan_, tables_, options.threads,
+                 options.hooks ? options.hooks->on_rays : RaySink{}, result_.build),
+      checkpoint_(scene, device, options) {
+    result_.plan = plan_.wavelengths;
     result_.setup_seconds = seconds_since(start_) - result_.build.seconds;
     rendering_ = Clock::now();
 }
@@ -130,7 +75,7 @@ double RenderRun::seconds() const {
 
 void RenderRun::estimate_error() {
     wavefront_.film().read([&](FilmSums film) {
-        const RelmseEstimate estimate = estimated_relmse(film, layout_, result_.plan.film.count,
+        const RelmseEstimate estimate = estimated_relmse(film, plan_.film, result_.plan.film.count,
                                                          options_.adaptive ? &errors_ : nullptr);
         state_.relmse = estimate.value;
         state_.relmse_low = estimate.low;
@@ -145,7 +90,7 @@ std::span<const float> RenderRun::pixel_errors() {
 }
 
 SpectralImage RenderRun::image_so_far() const {
-    FilmResolver resolver = film_resolver(layout_, scene_, result_.plan);
+    FilmResolver resolver = film_resolver(plan_, scene_);
     wavefront_.film().read([&](FilmSums film) {
         for (const FilmStrip& strip : film)
             resolver.add(strip);
@@ -171,13 +116,13 @@ void RenderRun::after_pass(std::uint32_t samples, const RenderObserver& observe,
 RenderResult RenderRun::finish() {
     result_.samples = state_.samples;
     result_.relmse = state_.relmse;
-    collect(result_, wavefront_, tables_);
+    collect(result_, wavefront_, plan_, tables_);
     result_.total_seconds = seconds_since(start_);
     return std::move(result_);
 }
 
 RenderResult RenderRun::finish_with_image() {
-    finish_film(result_, wavefront_, film_resolver(layout_, scene_, result_.plan));
+    finish_film(result_, wavefront_, film_resolver(plan_, scene_));
     return finish();
 }
 

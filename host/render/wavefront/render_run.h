@@ -2,6 +2,7 @@
 
 #include "host/geometry/geometry.h"
 #include "host/render/checkpoint/checkpoint_file.h"
+#include "host/render/plan/render_plan.h"
 #include "host/render/tables/scene_tables.h"
 #include "host/render/wavefront/wavefront.h"
 #include "reradiant/render.h"
@@ -26,8 +27,7 @@ public:
     /// Seconds of rendering until now; what observers took is left out.
     double seconds() const;
     Wavefront& wavefront() { return wavefront_; }
-    const FilmLayout& layout() const { return layout_; }
-    const WavelengthPlan& plan() const { return result_.plan; }
+    const RenderPlan& plan() const { return plan_; }
     /// Returns what each pixel adds to the estimated error, for adaptive renders.
     std::span<const float> pixel_errors();
 
@@ -51,10 +51,10 @@ private:
     const Scene& scene_;
     const RenderOptions& options_;
     RenderResult result_;
+    const RenderPlan plan_;
     SceneTables tables_;
     Geometry geometry_;
     Wavefront wavefront_;
-    FilmLayout layout_;
     CheckpointFile checkpoint_;
     RenderProgress state_;
     std::vector<float> errors_; ///< per pixel, if adaptive; empty before the first estimate

@@ -1,8 +1,6 @@
 #include "host/render/wavefront/wavefront.h"
 
-#include "host/render/tables/hero_tables.h"
-#include "kernels/core/features.h"
-#include "reradiant/error.h"
+#include "kernels/stages/arguments.h"
 
 #include <algorithm>
 #include <chrono>
@@ -21,120 +19,92 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::uint32_t batch_capacity(const WavefrontSettings& settings, std::uint32_t pixels) {
-    const std::size_t wanted = std::max<std::size_t>(settings.batch_paths, 1);
-    return static_cast<std::uint32_t>(
-        std::min<std::size_t>(wanted, static_cast<std::size_t>(pixels) * 1024u));
+RenderRecord render_record(const RenderPlan& plan, const SceneTables& scene) {
+    const auto [first_seen, seen] = plan.wavelengths.seen_lanes();
+    return {scene.camera,
+            scene.image,
+            scene.environment,
+            scene.sampled_lights,
+            plan.max_depth,
+            plan.min_depth,
+            static_cast<std::uint32_t>(plan.wavelengths.phases),
+            static_cast<std::uint32_t>(first_seen),
+            static_cast<std::uint32_t>(seen),
+            plan.sequence_blocks,
+            plan.seed,
+            plan.path_capacity};
 }
+
+// What kernels/stages/arguments.h lists becomes the arguments of a call: arrays by their names
+// among the buffers, or the strip's, and records by the names that they have where the call stands.
+template <typename T>
+const cl::Buffer& bound_array(const DeviceArray<T>& array) {
+    return array.buffer();
+}
+template <typename T>
+const T& bound_record(const T& record) {
+    return record;
+}
+#define BOUND_ARRAY(type, name) bound_array<type>(buffers_.name)
+#define BOUND_STRIP(type, name) bound_array<type>(work.strip->name)
+#define BOUND_RECORD(type, name) bound_record<type>(name)
+#define BOUND(list) list(BOUND_ARRAY, BOUND_ARRAY, BOUND_STRIP, BOUND_RECORD)
 
 } // namespace
 
-Wavefront::Wavefront(const Device& device, const Geometry& geometry, const SceneTables& scene,
-                     const WavelengthPlan& plan, const WavefrontSettings& settings,
+Wavefront::Wavefront(const Device& device, const Geometry& geometry, const RenderPlan& plan,
+                     const SceneTables& scene, int threads, const RaySink& on_rays,
                      BuildStatistics& build)
-    : device_(device), geometry_(geometry), scene_(scene), settings_(settings),
-      phases_(plan.phases), lanes_(plan.padded_lanes()), seen_lanes_(plan.seen_lanes()),
-      film_layout_(film_layout(plan, scene.features.band_variance, scene.features.scatter)),
-      pixel_count_(scene.camera.width * scene.camera.height),
-      capacity_(batch_capacity(settings, pixel_count_)),
-      rounds_(settings.max_depth + (scene.features.area_lights || scene.features.environment ||
-                                            scene.features.environment_image
-                                        ? 1u
-                                        : 0u)),
-      samples_lights_(scene.sampled_lights > 0) {
+    : device_(device), geometry_(geometry), on_rays_(on_rays), threads_(threads),
+      depths_(plan.depths), walks_(plan.features.walk), render_(render_record(plan, scene)) {
     opencl_checked("setting up the renderer", [&] {
-        build_kernels(build);
-        materials_ = {device, std::span(scene.materials)};
-        layers_ = {device, std::span(scene.layers)};
-        lobes_ = {device, std::span(scene.lobes)};
-        surfaces_ = {device, std::span(scene.surfaces)};
-        textures_ = {device, std::span(scene.textures)};
-        lights_ = {device, std::span(scene.lights)};
-        walk_parts_ = {device, std::span(scene.walk_parts)};
-        tables_ = {device, std::span(scene.tables)};
-        const std::size_t slots = static_cast<std::size_t>(capacity_) * rounds_;
-        rays_ = {device, capacity_};
-        hits_ = {device, capacity_};
-        live_ = {DeviceArray<std::uint32_t>{device, capacity_}, {device, capacity_}};
-        goes_on_ = {device, capacity_};
-        paths_ = {device, capacity_};
-        chosen_ = {device, settings.adaptive ? std::size_t{pixel_count_} : 0};
-        vertices_ = {device, slots};
-        const bool sampling = scene.features.area_lights || scene.features.delta_lights ||
-                              scene.features.environment_image;
-        shadow_rays_ = {device, sampling ? slots : 0};
-        const bool colours = scene.features.environment_image || scene.features.reflectance_image;
-        colours_ = {device, colours ? slots * VERTEX_COLOURS : 0};
-        const bool walks = scene.features.walk;
-        walk_chunks_ = {device,
-                        walks ? walk_chunks_a_path * static_cast<std::size_t>(capacity_) : 0};
-        walk_chunks_used_ = {device, std::size_t{walks}};
-        walk_vertices_ = {device, walks ? slots : 0};
-        const std::size_t sets =
-            plan.hero > 0 ? (slots + capacity_) * static_cast<std::size_t>(hero_width(plan.hero))
-                          : 0;
-        hero_lanes_ = {device, sets};
-        hero_weights_ = {device, sets};
-        lobe_weights_ = {device, slots * 2u * static_cast<std::size_t>(scene.features.lobes)};
-        radiance_ = {device,
-                     static_cast<std::size_t>(capacity_) * static_cast<std::size_t>(lanes_)};
-        film_bands_ = {device, std::span<const std::int32_t>(film_layout_.lane_bands)};
-        film_weights_ = {device, std::span<const float>(film_layout_.lane_weights)};
-        y_weights_ = {device, std::span<const float>(film_layout_.y_weights)};
-        film_ = {device, film_layout_, pixel_count_};
+        build_kernels(plan.features, build);
+        buffers_ = {device, plan, scene};
+        film_ = {device, plan.film, static_cast<std::uint32_t>(plan.pixels)};
         device_.opencl().queue.finish();
     });
 }
 
-void Wavefront::build_kernels(BuildStatistics& build) {
-    RenderFeatures features = scene_.features;
-    features.scatter = film_layout_.scatter;
-    features.film_chunks = film_layout_.lanes / WIDTH;
+void Wavefront::build_kernels(const RenderFeatures& features, BuildStatistics& build) {
     const KernelDefines defines = features.defines();
-    generate_ = {build_program(device_, "kernels/generate.cl", defines, &build), "generate",
-                 scalar_group};
-    shade_ = {build_program(device_, "kernels/shade.cl", defines, &build), "shade", scalar_group};
-    gather_ = {build_program(device_, "kernels/gather.cl", defines, &build), "gather",
-               vector_group};
-    film_kernel_ = {build_program(device_, "kernels/film.cl", defines, &build), "film",
-                    vector_group};
+    const auto kernel = [&](const char* file, const char* name, std::size_t group) {
+        return Kernel(build_program(device_, file, defines, &build), name, group);
+    };
+    generate_ = kernel("kernels/generate.cl", "generate", scalar_group);
+    shade_ = kernel("kernels/shade.cl", "shade", scalar_group);
+    gather_ = kernel("kernels/gather.cl", "gather", vector_group);
+    film_kernel_ = kernel("kernels/film.cl", "film", vector_group);
 }
 
 void Wavefront::render_pass(std::uint32_t first_sample, std::uint32_t samples) {
-    opencl_checked("rendering", [&] {
-        for (std::uint32_t done = 0; done < samples;) {
-            const std::uint32_t together = std::min(samples - done, capacity_);
-            const std::uint32_t pixels_at_once = capacity_ / together;
-            for (const DeviceFilm::Strip& strip : film_.strips())
-                for (std::uint32_t first = 0; first < strip.pixels; first += pixels_at_once)
-                    trace_batch({&strip, strip.first_pixel + first,
-                                 std::min(pixels_at_once, strip.pixels - first),
-                                 first_sample + done, together});
-            done += together;
-        }
-        finish_kernels();
-    });
+    trace_pixels({0, 0, 0, first_sample, samples, 0}, [](std::uint32_t pixel) { return pixel; });
 }
 
 void Wavefront::render_pass(std::span<const PixelSamples> pixels, std::uint32_t samples) {
+    opencl_checked("choosing pixels", [&] {
+        const auto chosen = buffers_.chosen.map(CL_MAP_WRITE, 0, pixels.size());
+        std::copy(pixels.begin(), pixels.end(), chosen.span().begin());
+    });
+    trace_pixels({1, 0, 0, 0, samples, 0}, [pixels](std::uint32_t pixel) {
+        return static_cast<std::uint32_t>( // first chosen one not before it
+            std::ranges::lower_bound(pixels, pixel, {}, &PixelSamples::pixel) - pixels.begin());
+    });
+}
+
+/// Traces a pass, of which `pass` says the samples and whether pixels are chosen, in batches that
+/// fit. place_of: where a pixel stands among those of the pass.
+void Wavefront::trace_pixels(const BatchRecord& pass,
+                             const std::function<std::uint32_t(std::uint32_t)>& place_of) {
     opencl_checked("rendering", [&] {
-        {
-            const auto chosen = chosen_.map(CL_MAP_WRITE, 0, pixels.size());
-            std::copy(pixels.begin(), pixels.end(), chosen.span().begin());
-        }
-        const auto place_of = [&](std::uint32_t pixel) { // first chosen one not before it
-            return static_cast<std::uint32_t>(
-                std::ranges::lower_bound(pixels, pixel, {}, &PixelSamples::pixel) - pixels.begin());
-        };
-        for (std::uint32_t done = 0; done < samples;) {
-            const std::uint32_t together = std::min(samples - done, capacity_);
-            const std::uint32_t pixels_at_once = capacity_ / together;
+        for (std::uint32_t done = 0; done < pass.samples;) {
+            const std::uint32_t together = std::min(pass.samples - done, render_.capacity);
+            const std::uint32_t most = render_.capacity / together;
             for (const DeviceFilm::Strip& strip : film_.strips()) {
                 const std::uint32_t end = place_of(strip.first_pixel + strip.pixels);
-                for (std::uint32_t first = place_of(strip.first_pixel); first < end;
-                     first += pixels_at_once)
-                    trace_batch({&strip, first, std::min(pixels_at_once, end - first), done,
-                                 together, true});
+                for (std::uint32_t at = place_of(strip.first_pixel); at < end; at += most)
+                    trace_batch({&strip,
+                                 {pass.chosen, at, std::min(most, end - at),
+                                  pass.first_sample + done, together, strip.first_pixel}});
             }
             done += together;
         }
@@ -142,23 +112,23 @@ void Wavefront::render_pass(std::span<const PixelSamples> pixels, std::uint32_t 
     });
 }
 
-void Wavefront::trace_batch(const Batch& batch) {
+void Wavefront::trace_batch(const Batch& work) {
     do
-        trace_paths(batch);
+        trace_paths(work);
     while (!walks_fit());
-    gather(batch);
-    add_to_film(batch);
-    statistics_.paths += batch.paths();
+    gather(work);
+    add_to_film(work);
+    statistics_.paths += work.paths();
 }
 
-void Wavefront::trace_paths(const Batch& batch) {
-    generate(batch);
-    if (scene_.features.walk)
-        walk_chunks_used_.fill_zero();
+void Wavefront::trace_paths(const Batch& work) {
+    generate(work);
+    if (walks_)
+        buffers_.walk_chunks_used.fill_zero();
     for (std::uint32_t depth = 0;; ++depth) {
         finish_kernels();
-        keep_live(batch, depth);
-        trace(batch, depth);
+        keep_live(work, depth);
+        trace(work, depth);
         if (live_count_[depth % 2] == 0)
             return;
         shade(depth);
@@ -168,44 +138,49 @@ void Wavefront::trace_paths(const Batch& batch) {
 /// Returns true when the walks of a batch found room for their events. If not it makes the room:
 /// the walks are the same when the batch is traced again.
 bool Wavefront::walks_fit() {
-    if (!scene_.features.walk)
+    if (!walks_)
         return true;
     std::size_t used = 0;
     {
-        const auto counter = walk_chunks_used_.map(CL_MAP_READ, 0, 1);
+        const auto counter = buffers_.walk_chunks_used.map(CL_MAP_READ, 0, 1);
         used = counter.span().front();
     }
-    if (used <= walk_chunks_.size())
+    if (used <= buffers_.walk_chunks.size())
         return true;
-    walk_chunks_ = {}; // never two of them
-    walk_chunks_ = {device_, used + used / 4};
+    buffers_.walk_chunks = {}; // never two of them
+    buffers_.walk_chunks = {device_, used + used / 4};
     return false;
 }
 
-void Wavefront::generate(const Batch& batch) {
-    generate_.bind(rays_.buffer(), paths_.buffer(), chosen_.buffer(),
-                   static_cast<std::uint32_t>(batch.chosen), scene_.camera, batch.first_pixel,
-                   batch.first_sample, batch.samples, batch.paths(),
-                   static_cast<std::uint32_t>(phases_), settings_.sequence_blocks, settings_.seed);
-    launch(generate_, batch.paths(), statistics_.generate_seconds);
+void Wavefront::generate(const Batch& work) {
+    const RenderRecord& render = render_;
+    const BatchRecord& batch = work.record;
+    generate_.bind(BOUND(GENERATE_ARGUMENTS));
+    launch(generate_, work.paths(), statistics_.generate_seconds);
+}
+
+/// Maps the list of the paths that reach a depth.
+DeviceArray<std::uint32_t>::Mapping Wavefront::map_live(cl_map_flags flags, std::uint32_t depth,
+                                                        std::size_t count) const {
+    return buffers_.live.map(flags, (depth % 2) * std::size_t{render_.capacity}, count);
 }
 
 /// Lists the paths that reach a depth: most end after few vertices, and the stages then work on
 /// what is left.
-void Wavefront::keep_live(const Batch& batch, std::uint32_t depth) {
+void Wavefront::keep_live(const Batch& work, std::uint32_t depth) {
     std::uint32_t& kept = live_count_[depth % 2];
     kept = 0;
-    if (depth == rounds_)
+    if (depth == depths_)
         return;
-    const auto live = live_[depth % 2].map(CL_MAP_WRITE, 0, batch.paths());
+    const auto live = map_live(CL_MAP_WRITE, depth, work.paths());
     if (depth == 0) {
         std::iota(live.span().begin(), live.span().end(), 0u);
-        kept = batch.paths();
+        kept = work.paths();
         return;
     }
     const std::uint32_t candidates = live_count_[(depth - 1) % 2];
-    const auto before = live_[(depth - 1) % 2].map(CL_MAP_READ, 0, candidates);
-    const auto goes_on = goes_on_.map(CL_MAP_READ, 0, candidates);
+    const auto before = map_live(CL_MAP_READ, depth - 1, candidates);
+    const auto goes_on = buffers_.goes_on.map(CL_MAP_READ, 0, candidates);
     for (std::uint32_t i = 0; i < candidates; ++i) { // without branches
         live.span()[kept] = before.span()[i];
         kept += goes_on.span()[i];
@@ -213,21 +188,22 @@ void Wavefront::keep_live(const Batch& batch, std::uint32_t depth) {
 }
 
 /// Rays that reach a depth, together with the shadow rays of the depth before.
-void Wavefront::trace(const Batch& batch, std::uint32_t depth) {
+void Wavefront::trace(const Batch& work, std::uint32_t depth) {
     const auto start = std::chrono::steady_clock::now();
-    const auto rays = rays_.map(CL_MAP_READ, 0, batch.paths());
-    const auto hits = hits_.map(CL_MAP_WRITE, 0, batch.paths());
-    const auto live = live_[depth % 2].map(CL_MAP_READ, 0, live_count_[depth % 2]);
-    const bool has_shadows = depth > 0 && samples_lights_;
-    const std::size_t before = has_shadows ? depth - 1 : 0;
-    const auto shadow_rays = shadow_rays_.map(CL_MAP_READ | CL_MAP_WRITE, before * capacity_,
-                                              has_shadows ? batch.paths() : 0);
+    const auto rays = buffers_.rays.map(CL_MAP_READ, 0, work.paths());
+    const auto hits = buffers_.hits.map(CL_MAP_WRITE, 0, work.paths());
+    const auto live = map_live(CL_MAP_READ, depth, live_count_[depth % 2]);
+    const bool has_shadows = depth > 0 && render_.sampled_lights > 0;
+    const std::uint32_t before = has_shadows ? depth - 1 : 0;
+    const auto shadow_rays =
+        buffers_.shadow_rays.map(CL_MAP_READ | CL_MAP_WRITE, std::size_t{before} * render_.capacity,
+                                 has_shadows ? work.paths() : 0);
     const auto shadow_live =
-        live_[before % 2].map(CL_MAP_READ, 0, has_shadows ? live_count_[before % 2] : 0);
+        map_live(CL_MAP_READ, before, has_shadows ? live_count_[before % 2] : 0);
     const RaysToHit to_hit{rays.span(), hits.span(), live.span(), depth == 0};
     const RaysToBlock to_block{shadow_rays.span(), shadow_live.span()};
     show_rays(to_hit, to_block);
-    const TraceStatistics traced = geometry_.trace(to_hit, to_block, settings_.threads);
+    const TraceStatistics traced = geometry_.trace(to_hit, to_block, threads_);
     statistics_.rays += live.span().size() + traced.blockable;
     statistics_.mapped_bytes += rays.span().size_bytes() + hits.span().size_bytes() +
                                 2 * shadow_rays.span().size_bytes(); // there and back
@@ -239,49 +215,37 @@ void Wavefront::trace(const Batch& batch, std::uint32_t depth) {
 }
 
 void Wavefront::show_rays(const RaysToHit& rays, const RaysToBlock& shadow_rays) const {
-    if (!settings_.on_rays)
+    if (!on_rays_)
         return;
     std::vector<RayRecord> shown;
     for (const std::uint32_t path : shadow_rays.live)
         if (shadow_rays.rays[path].t_far >= 0.0f)
             shown.push_back(shadow_rays.rays[path]);
-    settings_.on_rays(shown, true, false);
+    on_rays_(shown, true, false);
     shown.clear();
     for (const std::uint32_t path : rays.live)
         shown.push_back(rays.rays[path]);
-    settings_.on_rays(shown, false, rays.coherent);
+    on_rays_(shown, false, rays.coherent);
 }
 
 void Wavefront::shade(std::uint32_t depth) {
-    const std::uint32_t live_count = live_count_[depth % 2];
-    shade_.bind(rays_.buffer(), hits_.buffer(), paths_.buffer(), vertices_.buffer(),
-                shadow_rays_.buffer(), lobe_weights_.buffer(), colours_.buffer(),
-                materials_.buffer(), layers_.buffer(), lobes_.buffer(), surfaces_.buffer(),
-                textures_.buffer(), lights_.buffer(), tables_.buffer(), walk_parts_.buffer(),
-                walk_chunks_.buffer(), walk_chunks_used_.buffer(), walk_vertices_.buffer(),
-                live_[depth % 2].buffer(), goes_on_.buffer(), scene_.image,
-                static_cast<std::uint32_t>(walk_chunks_.size()), live_count, capacity_, depth,
-                settings_.max_depth, settings_.min_depth, scene_.sampled_lights, scene_.environment,
-                settings_.sequence_blocks, settings_.seed);
-    launch(shade_, live_count, statistics_.shade_seconds);
+    const RenderRecord& render = render_;
+    const DepthRecord now{depth, live_count_[depth % 2],
+                          static_cast<std::uint32_t>(buffers_.walk_chunks.size())};
+    shade_.bind(BOUND(SHADE_ARGUMENTS));
+    launch(shade_, now.live_paths, statistics_.shade_seconds);
 }
 
-void Wavefront::gather(const Batch& batch) {
-    gather_.bind(radiance_.buffer(), paths_.buffer(), vertices_.buffer(), shadow_rays_.buffer(),
-                 lobe_weights_.buffer(), colours_.buffer(), materials_.buffer(), layers_.buffer(),
-                 lobes_.buffer(), lights_.buffer(), tables_.buffer(), walk_parts_.buffer(),
-                 walk_chunks_.buffer(), walk_vertices_.buffer(), hero_lanes_.buffer(),
-                 hero_weights_.buffer(), static_cast<std::uint32_t>(seen_lanes_[0]),
-                 static_cast<std::uint32_t>(seen_lanes_[1]), scene_.image.light, batch.paths(),
-                 capacity_, static_cast<std::uint32_t>(phases_), settings_.seed);
-    launch(gather_, batch.paths(), statistics_.gather_seconds);
+void Wavefront::gather(const Batch& work) {
+    const RenderRecord& render = render_;
+    const BatchRecord& batch = work.record;
+    gather_.bind(BOUND(GATHER_ARGUMENTS));
+    launch(gather_, work.paths(), statistics_.gather_seconds);
 }
 
-void Wavefront::add_to_film(const Batch& batch) {
-    film_kernel_.bind(batch.strip->sums.buffer(), batch.strip->statistics.buffer(),
-                      radiance_.buffer(), paths_.buffer(), film_bands_.buffer(),
-                      film_weights_.buffer(), y_weights_.buffer(), batch.strip->first_pixel,
-                      batch.samples, batch.pixels);
+void Wavefront::add_to_film(const Batch& work) {
+    const BatchRecord& batch = work.record;
+    film_kernel_.bind(BOUND(FILM_ARGUMENTS));
     launch(film_kernel_, batch.pixels, statistics_.film_seconds);
 }
 
@@ -301,13 +265,7 @@ void Wavefront::finish_kernels() {
 }
 
 std::size_t Wavefront::device_bytes() const {
-    return materials_.bytes() + layers_.bytes() + lobes_.bytes() + surfaces_.bytes() +
-           walk_parts_.bytes() + walk_chunks_.bytes() + walk_vertices_.bytes() + textures_.bytes() +
-           hero_lanes_.bytes() + hero_weights_.bytes() + colours_.bytes() + lights_.bytes() +
-           tables_.bytes() + rays_.bytes() + shadow_rays_.bytes() + hits_.bytes() +
-           2 * live_[0].bytes() + goes_on_.bytes() + paths_.bytes() + chosen_.bytes() +
-           vertices_.bytes() + lobe_weights_.bytes() + radiance_.bytes() + film_.bytes() +
-           film_bands_.bytes() + film_weights_.bytes() + y_weights_.bytes();
+    return buffers_.bytes() + film_.bytes();
 }
 
 } // namespace reradiant

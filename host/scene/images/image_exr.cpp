@@ -1,7 +1,8 @@
+#include "host/scene/images/image_io.h"
+
 #include "host/exr/exr_input.h"
 #include "host/exr/exr_window.h"
 #include "host/scene/images/exr_colours.h"
-#include "host/scene/images/image_io.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

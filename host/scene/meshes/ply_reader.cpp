@@ -1,5 +1,6 @@
-#include "host/base/logging.h"
 #include "host/scene/meshes/mesh_io.h"
+
+#include "host/base/logging.h"
 #include "host/scene/meshes/ply_header.h"
 #include "host/scene/meshes/ply_values.h"
 #include "host/scene/meshes/ply_wedges.h"

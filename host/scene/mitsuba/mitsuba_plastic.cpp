@@ -1,6 +1,6 @@
 #include "host/scene/mitsuba/mitsuba_scene.h"
-#include "reradiant/adding.h"
 #include "reradiant/colour.h"
+#include "reradiant/stack_model.h"
 
 #include <algorithm>
 #include <cmath>

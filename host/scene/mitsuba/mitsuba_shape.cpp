@@ -1,6 +1,7 @@
+#include "host/scene/mitsuba/mitsuba_scene.h"
+
 #include "host/base/logging.h"
 #include "host/scene/meshes/mesh_io.h"
-#include "host/scene/mitsuba/mitsuba_scene.h"
 
 #include <Eigen/LU>
 #include <fmt/core.h>

@@ -1,6 +1,7 @@
+#include "host/scene/toml/scene_parts.h"
+
 #include "host/scene/images/image_io.h"
 #include "host/scene/meshes/mesh_io.h"
-#include "host/scene/toml/scene_parts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
-#include "host/scene/images/image_io.h"
 #include "host/scene/toml/scene_parts.h"
+
+#include "host/scene/images/image_io.h"
 #include "host/scene/toml/spectrum_reader.h"
 #include "reradiant/colour.h"
 

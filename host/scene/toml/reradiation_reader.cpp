@@ -1,5 +1,6 @@
-#include "host/scene/model/textured_value.h"
 #include "host/scene/toml/material_reader.h"
+
+#include "host/scene/model/textured_value.h"
 #include "host/scene/toml/spectrum_reader.h"
 #include "host/spectral/evidence/matrix_warnings.h"
 #include "reradiant/reradiation.h"

@@ -1,5 +1,6 @@
-#include "host/scene/meshes/mesh_io.h"
 #include "host/scene/toml/scene_parts.h"
+
+#include "host/scene/meshes/mesh_io.h"
 
 #include <Eigen/LU>
 

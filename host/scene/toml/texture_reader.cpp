@@ -1,5 +1,6 @@
-#include "host/scene/images/image_io.h"
 #include "host/scene/model/textured_value.h"
+
+#include "host/scene/images/image_io.h"
 
 #include <algorithm>
 

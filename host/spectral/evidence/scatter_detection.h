@@ -2,7 +2,7 @@
 
 #include "host/spectral/evidence/scatter_contrast.h"
 #include "host/spectral/evidence/scatter_line.h"
-#include "reradiant/fit_mask.h"
+#include "reradiant/scatter_line.h"
 #include "reradiant/reradiation.h"
 
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reradiant/fit_mask.h"
+#include "reradiant/scatter_line.h"
 #include "reradiant/wavelength_grid.h"
 
 #include <Eigen/Core>

@@ -1,6 +1,7 @@
+#include "host/spectral/files/matrix_formats.h"
+
 #include "host/base/atomic_file.h"
 #include "host/base/logging.h"
-#include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/text/text_reader.h"
 
 #include <fmt/core.h>

@@ -1,7 +1,8 @@
+#include "host/spectral/files/matrix_formats.h"
+
 #include "host/spectral/evidence/undeclared_table.h"
 #include "host/spectral/files/matrix_csv_header.h"
 #include "host/spectral/files/matrix_csv_table.h"
-#include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/text/csv_lines.h"
 #include "host/spectral/text/text_reader.h"
 #include "host/spectral/text/wavelength_unit.h"

@@ -1,6 +1,7 @@
+#include "reradiant/reradiation_file.h"
+
 #include "host/base/atomic_file.h"
 #include "host/spectral/files/matrix_formats.h"
-#include "reradiant/reradiation_file.h"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,9 @@
+#include "host/spectral/files/matrix_formats.h"
+
 #include "host/base/atomic_file.h"
 #include "host/base/logging.h"
 #include "host/exr/exr_input.h"
 #include "host/exr/exr_window.h"
-#include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/spectrum/spectral_names.h"
 #include "reradiant/reradiation_file.h"
 

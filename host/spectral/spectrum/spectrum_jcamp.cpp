@@ -1,5 +1,6 @@
-#include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/spectrum/spectrum_formats.h"
+
+#include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/text/text_reader.h"
 #include "host/spectral/text/wavelength_unit.h"
 

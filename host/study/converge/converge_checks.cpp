@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace reradiant {
 
@@ -25,12 +26,14 @@ bool has_bands(const SpectralImage& image, const WavelengthGrid& bands) {
 } // namespace
 
 void check_methods(const Scene& scene, const ConvergeOptions& options) {
-    WavelengthPlan plan =
-        plan_wavelengths(scene, options.render.bands.value_or(film_bands(scene)), {1});
+    RenderOptions render = options.render;
+    render.in_double = false; // whether there is the memory or the device for it is not asked here
+    render.memory_limit_bytes = std::numeric_limits<std::uint64_t>::max();
     for (const RenderMethod& method : options.methods) {
-        plan.hero = method.hero_count;
+        render.model = method.model;
+        render.wavelengths = {1, method.hero_count};
         try {
-            build_scene_tables(scene, plan, method.model);
+            build_scene_tables(scene, plan_render(scene, {}, render));
         } catch (const Error& error) {
             throw_input_error({scene.file.string()},
                               fmt::format("cannot be rendered by the method '{}': {}", method.name,

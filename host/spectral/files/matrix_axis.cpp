@@ -1,4 +1,5 @@
 #include "host/spectral/files/matrix_formats.h"
+
 #include "host/spectral/spectrum/rounded_grid.h"
 
 #include <fmt/core.h>

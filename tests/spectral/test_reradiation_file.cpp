@@ -2,7 +2,7 @@
 #include "reradiant/reradiation_file.h"
 #include "reradiant/spectrum_file.h"
 #include "tests/spectral/refusal.h"
-#include "tests/spectral/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 #include <clocale>
 #include <cmath>
@@ -37,7 +37,7 @@ void expect_same(const ReradiationMatrix& a, const ReradiationMatrix& b, double 
     EXPECT_LE((a.values - b.values).cwiseAbs().maxCoeff(), tolerance);
 }
 
-class MatrixIo : public ScratchFolder {
+class MatrixIo : public test::ScratchFolder {
 protected:
     SourcePosition place_of_refusal(const std::string& name, const std::string& text) const {
         try {
@@ -297,7 +297,7 @@ TEST_F(MatrixIo, Case35NumbersDoNotDependOnTheLocale) {
         write_reradiation(path(name), sample());
         EXPECT_NEAR(read_reradiation(path(name)).values(2, 3), 0.4, 1e-7) << name;
     }
-    const std::string exr = content(path("m.exr"));
+    const std::string exr = test::file_bytes(path("m.exr"));
     EXPECT_NE(exr.find("T.390,000000nm.400,000000nm"), std::string::npos);
     EXPECT_NE(exr.find("T.400,000000nm"), std::string::npos);
     std::setlocale(LC_ALL, before.c_str());
@@ -311,14 +311,14 @@ TEST_F(MatrixIo, EndingsAreKnownInAnyCaseAndOthersRefused) {
     EXPECT_THROW(write_reradiation(path("m.txt"), sample()), Error);
     EXPECT_THROW(read_reradiation(path("missing.csv")), Error);
     EXPECT_THROW(read_reradiation(path("missing.exr")), Error);
-    EXPECT_THROW(read_reradiation(folder_), Error);
+    EXPECT_THROW(read_reradiation(folder), Error);
 }
 
 TEST_F(MatrixIo, Case53FailedWriteIsAnErrorAndLeavesNothing) {
     for (const char* name : {"absent/m.csv", "absent/m.bfc", "absent/m.exr"})
         EXPECT_THROW(write_reradiation(path(name), sample()), Error) << name;
     EXPECT_THROW(write_spectrum(path("absent/s.csv"), {400, 500}, {1, 2}), Error);
-    EXPECT_EQ(files_in_folder(), 0u);
+    EXPECT_EQ(scratch.file_count(), 0u);
 }
 
 TEST_F(MatrixIo, SpectraReadBackTheSameDoubles) {

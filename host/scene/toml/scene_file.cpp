@@ -1,3 +1,5 @@
+#include "reradiant/scene_file.h"
+
 #include "host/base/logging.h"
 #include "host/scene/mitsuba/mitsuba_import.h"
 #include "host/scene/model/surface_builder.h"
@@ -5,7 +7,6 @@
 #include "host/scene/toml/material_reader.h"
 #include "host/scene/toml/scene_parts.h"
 #include "host/scene/toml/scene_table.h"
-#include "reradiant/scene_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "host/spectral/files/matrix_csv_header.h"
+
 #include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/text/csv_lines.h"
 #include "host/spectral/text/wavelength_unit.h"

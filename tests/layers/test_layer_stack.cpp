@@ -1,7 +1,6 @@
+#include "host/layers/rough/interface_walk.h"
 #include "kernels/scatter/microfacet.h"
 #include "reradiant/stack_elements.h"
-
-#include "host/layers/rough/interface_walk.h"
 
 #include <gtest/gtest.h>
 

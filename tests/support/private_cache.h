@@ -6,7 +6,7 @@
 
 #include <unistd.h>
 
-namespace reradiant {
+namespace reradiant::test {
 
 /// Points the cache to a folder of this process's own for as long as it lives: tests neither see
 /// nor leave the user's files.
@@ -30,4 +30,4 @@ private:
     std::filesystem::path folder_;
 };
 
-} // namespace reradiant
+} // namespace reradiant::test

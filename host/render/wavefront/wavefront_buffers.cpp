@@ -1,0 +1,40 @@
+#include "host/render/wavefront/wavefront_buffers.h"
+
+#include "reradiant/error.h"
+
+namespace reradiant {
+
+namespace {
+
+template <typename T>
+DeviceArray<T> filled(const Device& device, const std::vector<T>& values, std::uint64_t planned) {
+    if (values.size() > planned)
+        throw_runtime_error("a table is larger than its plan says");
+    return {device, std::span<const T>(values)};
+}
+
+} // namespace
+
+WavefrontBuffers::WavefrontBuffers(const Device& device, const RenderPlan& plan,
+                                   const SceneTables& scene) {
+    const BufferCounts& counts = plan.counts;
+#define BUFFER(type, name) name = filled(device, scene.name, counts.name);
+    SCENE_BUFFERS(BUFFER)
+#undef BUFFER
+    film_bands = filled(device, plan.film.lane_bands, counts.film_bands);
+    film_weights = filled(device, plan.film.lane_weights, counts.film_weights);
+    y_weights = filled(device, plan.film.y_weights, counts.y_weights);
+#define BUFFER(type, name) name = {device, counts.name};
+    PATH_BUFFERS(BUFFER)
+#undef BUFFER
+}
+
+std::size_t WavefrontBuffers::bytes() const {
+    std::size_t bytes = 0;
+#define BUFFER(type, name) bytes += name.bytes();
+    RENDER_BUFFERS(BUFFER)
+#undef BUFFER
+    return bytes;
+}
+
+} // namespace reradiant

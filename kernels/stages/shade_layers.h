@@ -1,0 +1,108 @@
+// A step at a material whose model is in closed form: one light and one direction are sampled, by
+// scalars alone; wavelengths come in `gather`.
+#ifndef RERADIANT_SHADE_LAYERS_H
+#define RERADIANT_SHADE_LAYERS_H
+
+#include "kernels/stack/layer_stack.h"
+#include "kernels/stages/roulette.h"
+#include "kernels/stages/shade_lights.h"
+#include "kernels/stages/shade_surface.h"
+
+LayerStackView layer_stack_of(const ShadeScene* scene, uint material) {
+    LayerStackView stack;
+    stack.record = scene->materials[material];
+    stack.layers = scene->layers + stack.record.first_layer;
+    stack.lobes = scene->lobes + stack.record.first_lobe;
+    stack.choice = scene->tables + stack.record.choice;
+    return stack;
+}
+
+/// The scalar weights of all components in one direction; `scale` holds cos / pdf.
+static DirectionRecord direction_weights(LayerStackView stack, Vec3 wi, Vec3 wo, real scale,
+                                         __global float* lobe_weights) {
+    DirectionRecord d = {wi.x, wi.y, wi.z, 0.0f, 0.0f, scale, 0.0f, 0.0f};
+    const LayerDiffuse factors = layer_stack_diffuse(stack, wi, wo);
+    d.diffuse = scale * factors.diffuse;
+    d.first = scale * factors.first;
+#if FEATURE_ROUGH
+    if (stack.record.has_top_lobe)
+        d.top = scale * layer_stack_top(stack, wi, wo);
+#endif
+#if FEATURE_DEEPER_LOBES
+    for (uint l = 0u; l < stack.record.lobe_count; ++l)
+        lobe_weights[l] = scale * layer_stack_deeper(stack, l, wi, wo);
+#endif
+    return d;
+}
+
+#if FEATURE_LIGHT_SAMPLING
+/// Samples one light; the vertex gets its weights and the step its shadow ray.
+static void connect_layers(const ShadeScene* scene, SurfacePoint point, LayerStackView stack,
+                           const LayerChoice* choice, Random4 u, ShadeStep* step) {
+    Vec3 wi;
+    const LightSample sample = look_for_light(scene, point, u, &wi, step);
+    if (!(sample.weight > 0.0f))
+        return;
+    const real selection = scene->lights[step->vertex.light].selection;
+    real scale = wi.z * sample.weight / selection;
+    if (sample.pdf > 0.0f)
+        scale *=
+            lights_mis_weight(selection * sample.pdf, layer_stack_pdf(stack, choice, point.wo, wi));
+    step->vertex.towards_light =
+        direction_weights(stack, wi, point.wo, scale, step->lobe_weights + LOBES);
+}
+#endif
+
+/// The mirror direction's weights; nothing of the other components goes there.
+static DirectionRecord mirror_weights(LayerStackView stack, Vec3 wi, real probability,
+                                      __global float* lobe_weights) {
+    DirectionRecord mirror = {wi.x, wi.y, wi.z, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+    mirror.delta = 1.0f / probability;
+#if FEATURE_DEEPER_LOBES
+    for (uint l = 0u; l < stack.record.lobe_count; ++l)
+        lobe_weights[l] = 0.0f;
+#endif
+    return mirror;
+}
+
+/// Samples the direction in which the path goes on. It ends where none leaves the surface.
+static void leave_layers(SurfacePoint point, LayerStackView stack, const LayerChoice* choice,
+                         Random4 u, real survival, ShadeStep* step) {
+    int is_delta;
+    const Vec3 wi = layer_stack_sample(stack, choice, point.wo, u.a, u.b, u.c, &is_delta);
+    const Vec3 direction = sampling_to_world(point.frame, wi);
+    if (!surface_is_left(point, wi, direction))
+        return;
+    const real pdf = is_delta ? -1.0f : layer_stack_pdf(stack, choice, point.wo, wi);
+    step->state.bsdf_pdf = pdf;
+    if (is_delta)
+        step->vertex.next = mirror_weights(stack, wi, choice->cumulative[CHOICE_DELTA] * survival,
+                                           step->lobe_weights);
+    else if (pdf > 0.0f)
+        step->vertex.next =
+            direction_weights(stack, wi, point.wo, wi.z / (pdf * survival), step->lobe_weights);
+    else
+        return;
+    step->vertex.has_next = 1u;
+    step->next = ray_from(step->hit, direction, INFINITY);
+}
+
+/// u_light: chooses light and direction; u: direction and survival.
+static void shade_layers(const ShadeScene* scene, SurfacePoint point, Random4 u_light, Random4 u,
+                         ShadeStep* step) {
+    const LayerStackView stack = layer_stack_of(scene, point.material);
+    const LayerChoice choice = layer_stack_choice(stack, point.wo.z);
+#if FEATURE_LIGHT_SAMPLING
+    if (scene->render.sampled_lights > 0u)
+        connect_layers(scene, point, stack, &choice, u_light, step);
+#endif
+    step->state.throughput *= choice.largest_albedo;
+    const real survival =
+        path_survival(step->state.throughput, step->depth, scene->render.min_depth);
+    if (u.d < survival) {
+        leave_layers(point, stack, &choice, u, survival, step);
+        step->state.throughput /= survival;
+    }
+}
+
+#endif
