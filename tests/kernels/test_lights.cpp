@@ -24,7 +24,7 @@ LightRecord record(const float* p) {
 TEST(KernelLights, AreChosenByTheirCumulativeProbability) {
     std::vector<LightRecord> lights(3, LightRecord{});
     lights[0].cumulative = 0.25f;
-    lights[1].cumulative = 0.25f; // is never chosen
+    lights[1].cumulative = 0.25f;   // is never chosen
     lights[2].cumulative = 0.9999f; // rounding left a gap
     EXPECT_EQ(kernels::lights_choose(lights.data(), 3, 0.0), 0u);
     EXPECT_EQ(kernels::lights_choose(lights.data(), 3, 0.2499), 0u);

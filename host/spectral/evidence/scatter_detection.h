@@ -2,8 +2,8 @@
 
 #include "host/spectral/evidence/scatter_contrast.h"
 #include "host/spectral/evidence/scatter_line.h"
-#include "reradiant/scatter_line.h"
 #include "reradiant/reradiation.h"
+#include "reradiant/scatter_line.h"
 
 #include <vector>
 
