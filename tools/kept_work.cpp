@@ -4,6 +4,7 @@
 #include "host/render/checkpoint/work_checkpoint.h"
 #include "host/scene/model/sha256.h"
 #include "reradiant/error.h"
+#include "reradiant/stack_elements.h"
 #include "tools/interrupt.h"
 #include "tools/outputs.h"
 
@@ -25,11 +26,21 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::string conductor_text(const ConductorValues& values) {
-    return fmt::format("{} {} {} {} {} {} {}", values.ior, values.kappa,
-                       static_cast<int>(values.distribution), values.alpha,
-                       static_cast<int>(values.scattering), values.film.thickness_nm,
-                       values.film.ior);
+std::string text_of(const SurfaceValues& surface) {
+    return fmt::format("surface {} {} {} {} {} {} {} {} {}", surface.ior_above, surface.ior_below,
+                       surface.kappa, surface.is_conductor, static_cast<int>(surface.distribution),
+                       surface.alpha, static_cast<int>(surface.scattering),
+                       surface.film.thickness_nm, surface.film.ior);
+}
+std::string text_of(const SlabValues& slab) {
+    return fmt::format("slab {} {} {} {}", slab.ior, slab.tau, slab.tau_scattering,
+                       slab.anisotropy);
+}
+std::string text_of(const FlakesValues& flakes) {
+    return fmt::format("flakes {} {}", flakes.coverage, text_of(flakes.reflector));
+}
+std::string text_of(const DiffuseValues& substrate) {
+    return fmt::format("diffuse {}", substrate.sigma);
 }
 
 } // namespace
@@ -92,12 +103,8 @@ std::string file_digest(const fs::path& file) {
 std::string stack_digest(const LayerStack& stack, const WavelengthGrid& bands) {
     std::string text;
     for (const double nm : bands.centres_nm())
-        for (const LayerValues& layer : stack_at(stack, nm))
-            text += fmt::format("{} {} {} {} {} {} {} {} {} {} {}\n", layer.ior,
-                                static_cast<int>(layer.distribution), layer.alpha,
-                                static_cast<int>(layer.scattering), layer.tau, layer.tau_scattering,
-                                layer.anisotropy, layer.film.thickness_nm, layer.film.ior,
-                                layer.flake_coverage, conductor_text(layer.flakes));
+        for (const StackElement& element : stack_at(stack, nm))
+            text += std::visit([](const auto& values) { return text_of(values); }, element) + "\n";
     return sha256_hex(text);
 }
 

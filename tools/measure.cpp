@@ -65,8 +65,8 @@ SampleIdentity walk_identity(const std::filesystem::path& file, const Material& 
     const WavelengthGrid bands = measured_bands(material, request);
     const SubstrateValues substrate = measured_substrate(material.substrate, bands);
     std::string numbers = fmt::format("{}", fmt::join(substrate.matrix.reshaped(), " "));
-    for (const ConductorValues& conductor : substrate.conductor)
-        numbers += fmt::format(" {} {}", conductor.ior, conductor.kappa);
+    for (const SurfaceValues& conductor : substrate.conductor)
+        numbers += fmt::format(" {} {}", conductor.ior_below, conductor.kappa);
     return {{"material", file_digest(file)},
             {"stack", stack_digest(material.stack, bands)},
             {"substrate", sha256_hex(numbers)},

@@ -1,13 +1,13 @@
 #include "reradiant/measure.h"
-#include "host/measure/measure_substrate.h"
-#include "host/scene/model/substrate.h"
 
+#include "host/layers/models/layered_bsdf.h"
+#include "host/layers/stack/directions.h"
 #include "host/measure/measure_memory.h"
-
-#include "host/measure/surface_angles.h"
-#include "host/measure/surface_model.h"
+#include "host/measure/measure_substrate.h"
 #include "host/measure/walk_measurement.h"
+#include "host/scene/model/closed_model.h"
 #include "host/scene/model/model_choice.h"
+#include "host/scene/model/substrate.h"
 #include "reradiant/error.h"
 
 #include <Eigen/Core>
@@ -47,7 +47,7 @@ double radians(double degrees) {
 /// Appends the rows of one run and knows which wavelength pairs are possible.
 class RowWriter {
 public:
-    RowWriter(Measurement& measurement, const SurfaceModel& surface)
+    RowWriter(Measurement& measurement, const LayeredBsdf& surface)
         : measurement_(measurement), surface_(surface), bands_(measurement.bands.count),
           fluorescent_(!Eigen::MatrixXd(surface.coupling()).isDiagonal(0.0)) {}
 
@@ -56,14 +56,14 @@ public:
         const kernels::Vec3 wo = direction_at(std::cos(radians(theta_o)), radians(phi));
         MeasureRow row{theta_i, theta_o, phi, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
         diffuse(row, surface_.diffuse(wi, wo));
-        specular(row, [&](int band) { return surface_.specular(band, wi, wo); });
+        specular(row, [&](int band) { return surface_.at(band).specular(wi, wo); });
     }
 
     void hemispherical(double theta_i) {
         const double c = std::cos(radians(theta_i));
         MeasureRow row{theta_i, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
-        diffuse(row, surface_.hemispherical_diffuse(c));
-        specular(row, [&](int band) { return surface_.hemispherical_specular(band, c); });
+        diffuse(row, surface_.diffuse_albedo(c));
+        specular(row, [&](int band) { return surface_.at(band).specular_albedo(c); });
     }
 
 private:
@@ -92,20 +92,19 @@ private:
     }
 
     Measurement& measurement_;
-    const SurfaceModel& surface_;
+    const LayeredBsdf& surface_;
     int bands_;
     bool fluorescent_;
 };
 
-void add_notes(Measurement& measurement, const SurfaceModel& surface,
+void add_notes(Measurement& measurement, const LayeredBsdf& surface,
                const MeasureRequest& request) {
     double delta = 0.0, lost = 0.0;
     for (const double theta : request.theta_i_deg) {
         for (int band = 0; band < measurement.bands.count; ++band) {
             const double c = std::cos(radians(theta));
-            delta =
-                std::max(delta, surface.specular_delta(band, c) + surface.substrate_delta(band, c));
-            lost = std::max(lost, surface.lost(band, c));
+            delta = std::max(delta, surface.at(band).delta(c));
+            lost = std::max(lost, surface.at(band).lost(c));
         }
     }
     if (delta > 0.0) {
@@ -147,11 +146,8 @@ Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& su
     measurement.bands = bands;
     measurement.hemispherical = request.hemispherical;
     measurement.model = request.model == Model::Auto ? Model::Adding : request.model;
-    const std::unique_ptr<SurfaceModel> surface =
-        measurement.model == Model::WeidlichWilkie
-            ? weidlich_wilkie_surface(stack, substrate, bands)
-            : adding_surface(stack, substrate, bands);
-    RowWriter writer(measurement, *surface);
+    const LayeredBsdf surface(stack, substrate, bands, closed_model(measurement.model));
+    RowWriter writer(measurement, surface);
     for (const double theta_i : request.theta_i_deg) {
         throw_if_stopped(request.stop);
         if (request.hemispherical) {
@@ -162,7 +158,7 @@ Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& su
             for (const double phi : request.phi_deg)
                 writer.directional(theta_i, theta_o, phi);
     }
-    add_notes(measurement, *surface, request);
+    add_notes(measurement, surface, request);
     return measurement;
 }
 

@@ -1,7 +1,7 @@
 #include "host/measure/walk_measurement.h"
 
+#include "host/layers/stack/directions.h"
 #include "host/layers/walk/walk_estimate.h"
-#include "host/measure/surface_angles.h"
 #include "host/measure/walk_continuation.h"
 
 #include <fmt/core.h>

@@ -68,43 +68,6 @@ struct LayerStack {
     bool is_constant() const;
 };
 
-struct FilmValues {
-    double thickness_nm = 0.0; ///< 0: no film
-    double ior = 1.0;
-
-    bool operator==(const FilmValues&) const = default;
-};
-struct ConductorValues {
-    double ior = 1.0, kappa = 0.0;
-    Distribution distribution = Distribution::Ggx;
-    double alpha = 0.0;
-    Scattering scattering = Scattering::Multiple;
-    FilmValues film = {};
-    double wavelength_nm = 0.0; ///< for the interference in the film; 0 without a film
-
-    bool operator==(const ConductorValues&) const = default;
-};
-ConductorValues conductor_at(const Conductor& conductor, double wavelength_nm);
-
-/// A layer at one wavelength.
-struct LayerValues {
-    double ior = 1.5;
-    Distribution distribution = Distribution::Ggx;
-    double alpha = 0.0;
-    Scattering scattering = Scattering::Multiple;
-    double tau = 0.0;            ///< absorption * thickness: optical depth at normal passage
-    double tau_scattering = 0.0; ///< scattering coefficient * thickness
-    double anisotropy = 0.0;
-    FilmValues film = {};
-    double flake_coverage = 0.0; ///< 0: no flakes
-    ConductorValues flakes = {};
-    double wavelength_nm = 0.0; ///< for the interference in films; 0 without a film
-
-    bool operator==(const LayerValues&) const = default;
-};
-using StackValues = std::vector<LayerValues>;
-StackValues stack_at(const LayerStack& stack, double wavelength_nm);
-
 /// Returns the width parameter alpha from the half angle b where D falls to D(0)/2: ggx alpha^2 =
 /// sin^2 b / (sqrt 2 - cos^2 b); beckmann alpha = tan b / sqrt(ln 2 - 4 ln cos b); blinn exponent =
 /// -ln 2 / ln cos b, alpha = sqrt(2 / (exponent + 2)). Returns 0 for 0 degrees.

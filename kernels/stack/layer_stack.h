@@ -2,7 +2,7 @@
 // weights of its components. What depends on wavelength is applied in `gather` from tables.
 //
 // Components: mirror delta, rough top lobe, deeper rough lobes, and a cosine lobe that serves the
-// diffuse part, the residual of the specular part (reradiant/adding.h) and what slabs
+// diffuse part, the residual of the specular part (reradiant/stack_model.h) and what slabs
 // scatter.
 #ifndef RERADIANT_LAYER_STACK_H
 #define RERADIANT_LAYER_STACK_H

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/scatter/microfacet.h"
-#include "reradiant/layer_stack.h"
+#include "tests/layers/layer_values.h"
 
 #include <cmath>
 #include <random>

@@ -1,5 +1,5 @@
 // Adding in double precision over random stacks: shares stay shares, and light is not made.
-#include "reradiant/adding.h"
+#include "tests/layers/layer_values.h"
 #include "tests/support/full_run.h"
 #include "tests/support/private_cache.h"
 
@@ -64,7 +64,7 @@ double random_cosine(Engine& engine) {
 
 /// The first thing wrong, or nothing. What arrives at the substrate and what never does are parts
 /// of the light that came; the rest is absorbed.
-std::string fault(const AddingTransport& t, Engine& engine, int directions) {
+std::string fault(const StackModel& t, Engine& engine, int directions) {
     const double r = t.internal_reflectance();
     if (!(r >= 0.0 && r < 1.0 + 1e-12))
         return "r = " + std::to_string(r);

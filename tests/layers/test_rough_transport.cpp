@@ -1,6 +1,6 @@
 #include "kernels/scatter/fresnel.h"
 #include "kernels/scatter/microfacet.h"
-#include "reradiant/adding.h"
+#include "tests/layers/layer_values.h"
 #include "tests/layers/reference_walk.h"
 #include "tests/support/private_cache.h"
 
@@ -27,7 +27,7 @@ LayerValues smooth(double ior, double tau = 0.0) {
 }
 
 /// 2 integral c T dc by Simpson's rule in u with c = sin^2 u.
-double mean_transmission(const AddingTransport& t) {
+double mean_transmission(const StackModel& t) {
     const int steps = 2000;
     double sum = 0.0;
     for (int i = 0; i <= steps; ++i) {
@@ -39,7 +39,7 @@ double mean_transmission(const AddingTransport& t) {
     return sum * 0.5 * M_PI / steps / 3.0;
 }
 
-double albedo_over_white(const AddingTransport& t, double c) {
+double albedo_over_white(const StackModel& t, double c) {
     const double n = t.lowest_ior(), r = t.internal_reflectance();
     return t.specular_albedo(c) + t.transmission(c) / (1.0 - r) * mean_transmission(t) / (n * n);
 }

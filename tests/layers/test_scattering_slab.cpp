@@ -1,6 +1,6 @@
 #include "host/layers/angular/scattering_slab.h"
-#include "reradiant/adding.h"
 #include "reradiant/error.h"
+#include "tests/layers/layer_values.h"
 #include "tests/layers/reference_walk.h"
 #include "tests/support/private_cache.h"
 

@@ -1,6 +1,6 @@
 #include "host/layers/smooth/smooth_stack.h"
-#include "reradiant/adding.h"
 #include "reradiant/error.h"
+#include "tests/layers/layer_values.h"
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ double integrate(double a, double b, const Function& f) {
 }
 
 /// 2 integral c T dc over the air side, split where media thinner than air reflect totally.
-double mean_transmission(const AddingTransport& t, double split) {
+double mean_transmission(const StackModel& t, double split) {
     const auto f = [&](double c) { return 2.0 * c * t.transmission(c); };
     return split > 0.0 && split < 1.0 ? integrate(0.0, split, f) + integrate(split, 1.0, f)
                                       : integrate(0.0, 1.0, f);

@@ -6,6 +6,7 @@
 #include "kernels/scatter/oren_nayar.h"
 #include "kernels/scatter/thin_film.h"
 #include "reradiant/error.h"
+#include "tests/layers/layer_values.h"
 #include "tests/layers/walk_stacks.h"
 #include "tests/support/full_run.h"
 #include "tests/support/private_cache.h"
@@ -236,7 +237,8 @@ TEST(Walk, FilmsAndMetalsHaveTheirClosedForms) {
         EXPECT_EQ(mirrored.mean.delta(band), mirrored.mean.hemispherical.specular(band));
     }
     for (const Distribution distribution : {Distribution::Ggx, Distribution::Blinn}) {
-        const ConductorValues metal{0.3, 3.0, distribution, 0.3, Scattering::Single};
+        const SurfaceValues metal =
+            conductor_values(0.3, 3.0, distribution, 0.3, Scattering::Single);
         const LayerWalk bare({}, {.matrix = {}, .conductor = {metal}}, {550.0});
         const WalkEstimate lobe = estimate_walk(bare, wi, {&wo, 1}, 256, 1);
         const kernels::Vec3 h = kernels::vec3_normalise(kernels::vec3_add(wi, wo));

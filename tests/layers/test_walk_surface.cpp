@@ -1,4 +1,5 @@
 #include "host/layers/walk/walk_surface.h"
+#include "tests/layers/layer_values.h"
 #include "tests/support/full_run.h"
 #include "tests/support/statistics.h"
 
@@ -64,6 +65,10 @@ Fluxes measure(const WalkSurface& surface, bool from_below, double theta, int co
     return fluxes;
 }
 
+WalkSurface interface_surface(const LayerValues& layer) {
+    return walk_surface(*surface_of(stack_of({layer}).front()));
+}
+
 /// Every distribution and scattering of an interface and of a metal.
 std::vector<WalkSurface> surfaces() {
     std::vector<WalkSurface> all;
@@ -71,16 +76,17 @@ std::vector<WalkSurface> surfaces() {
          {Distribution::Ggx, Distribution::Beckmann, Distribution::Blinn}) {
         for (const Scattering scattering : {Scattering::Multiple, Scattering::Single}) {
             for (const double alpha : {0.2, 0.6}) {
-                all.push_back(interface_surface({{1.5, distribution, alpha, scattering}}, 0));
-                all.push_back(
-                    conductor_surface({0.2, 3.0, distribution, alpha, scattering}, 1.3, 550.0));
+                all.push_back(interface_surface({1.5, distribution, alpha, scattering}));
+                SurfaceValues metal = conductor_values(0.2, 3.0, distribution, alpha, scattering);
+                metal.ior_above = 1.3;
+                all.push_back(walk_surface(metal));
             }
         }
     }
     LayerValues filmed{1.8, Distribution::Ggx, 0.4, Scattering::Multiple};
     filmed.film = {250.0, 1.4};
     filmed.wavelength_nm = 500.0;
-    all.push_back(interface_surface({filmed}, 0));
+    all.push_back(interface_surface(filmed));
     return all;
 }
 
@@ -115,8 +121,7 @@ TEST(WalkSurface, RefractionHasTheSameValueBothWaysOverTheSquareOfTheIndex) {
     for (const Distribution distribution :
          {Distribution::Ggx, Distribution::Beckmann, Distribution::Blinn}) {
         for (const Scattering scattering : {Scattering::Single, Scattering::Multiple}) {
-            const WalkSurface surface =
-                interface_surface({{1.5, distribution, 0.3, scattering}}, 0);
+            const WalkSurface surface = interface_surface({1.5, distribution, 0.3, scattering});
             const kernels::Vec3 below = kernels::vec3_normalise(kernels::vec3(0.55, 0.1, 0.85));
             Mean down, up;
             const int count = 20000;
@@ -138,11 +143,11 @@ TEST(WalkSurface, RefractionHasTheSameValueBothWaysOverTheSquareOfTheIndex) {
 }
 
 TEST(WalkSurface, Case13EqualMediaDoNothing) {
-    const WalkSurface surface = interface_surface({{1.00004, Distribution::Ggx, 0.5}}, 0);
+    const WalkSurface surface = interface_surface({1.00004, Distribution::Ggx, 0.5});
     EXPECT_FALSE(surface.is_rough());
     WalkRandom random(1, 0, 0);
     const kernels::Vec3 v = kernels::vec3(0.6, 0.0, 0.8);
-    const WalkSurface equal = interface_surface({{1.0, Distribution::Ggx, 0.5}}, 0);
+    const WalkSurface equal = interface_surface({1.0, Distribution::Ggx, 0.5});
     const SurfaceEvent event = meet_smooth_surface(equal, false, v, random);
     EXPECT_FALSE(event.same_side);
     EXPECT_EQ(event.weight, 1.0);

@@ -1,4 +1,5 @@
 #include "host/layers/models/weidlich_wilkie.h"
+#include "tests/layers/layer_values.h"
 #include "tests/support/directions.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,8 @@ double fresnel(double c, double n) {
 } // namespace
 
 TEST(WeidlichWilkie, SmoothLayerIsTwoFresnelPassagesAndBeerLambert) {
-    const StackValues stack{{1.5, Distribution::Blinn, 0.0, Scattering::Single, 0.3}};
+    const StackElements stack =
+        stack_of({{1.5, Distribution::Blinn, 0.0, Scattering::Single, 0.3}});
     const Vec3 wi = test::direction_deg(45, 0), wo = test::direction_deg(20, 130);
     const double ci = std::sqrt(1 - 0.5 / 2.25), s = std::sin(20 * M_PI / 180);
     const double co = std::sqrt(1 - s * s / 2.25);
@@ -35,7 +37,8 @@ TEST(WeidlichWilkie, SmoothLayerIsTwoFresnelPassagesAndBeerLambert) {
 TEST(WeidlichWilkie, RoughLayerFollowsTheSeedsShader) {
     // the shader of the tutorial: F D G / (4 nl nv), T12 at v.h, t = (1 - G) + (1 - F) G
     const double alpha = 0.4, exponent = blinn_exponent(alpha);
-    const StackValues stack{{1.5, Distribution::Blinn, alpha, Scattering::Single, 0.0}};
+    const StackElements stack =
+        stack_of({{1.5, Distribution::Blinn, alpha, Scattering::Single, 0.0}});
     const Vec3 wi = test::direction_deg(60, 0), wo = test::direction_deg(75, 150);
     const double hx = wi.x + wo.x, hy = wi.y + wo.y, hz = wi.z + wo.z;
     const double length = std::sqrt(hx * hx + hy * hy + hz * hz);
@@ -51,16 +54,16 @@ TEST(WeidlichWilkie, RoughLayerFollowsTheSeedsShader) {
 }
 
 TEST(WeidlichWilkie, LowerInterfacesAreSeenThroughTheUpperOnes) {
-    const StackValues top{{1.5, Distribution::Blinn, 0.0, Scattering::Single, 0.2}};
-    StackValues both = top;
-    both.push_back({1.8, Distribution::Blinn, 0.0, Scattering::Single, 0.0});
+    const LayerValues top{1.5, Distribution::Blinn, 0.0, Scattering::Single, 0.2};
+    const StackElements both = stack_of({top, {1.8, Distribution::Blinn, 0.0, Scattering::Single}});
     const double inner = fresnel(1.0, 1.8 / 1.5), outer = fresnel(1.0, 1.5);
     const double through = (1 - outer) * (1 - outer) * std::exp(-0.4);
     EXPECT_NEAR(WeidlichWilkie::specular_delta(both, 1.0), outer + through * inner, 1e-14);
 }
 
 TEST(WeidlichWilkie, TotalReflectionLetsNothingThrough) {
-    const StackValues stack{{0.5, Distribution::Blinn, 0.0, Scattering::Single, 0.1}};
+    const StackElements stack =
+        stack_of({{0.5, Distribution::Blinn, 0.0, Scattering::Single, 0.1}});
     EXPECT_EQ(WeidlichWilkie::way_in(stack, test::direction_deg(60, 0), test::direction_deg(10, 0)),
               0.0);
     EXPECT_EQ(

@@ -3,7 +3,7 @@
 #include "host/layers/rough/facet_interreflection.h"
 #include "host/layers/rough/facet_reflectance.h"
 #include "host/layers/walk/walk_estimate.h"
-#include "reradiant/adding.h"
+#include "tests/layers/layer_values.h"
 #include "tests/support/directions.h"
 #include "tests/support/private_cache.h"
 
@@ -31,12 +31,12 @@ double fresnel(double c, std::complex<double> n) {
 }
 
 /// Gold's numbers near 550 nm.
-const ConductorValues gold{0.42, 2.35, Distribution::Ggx, 0.3, Scattering::Single};
+const SurfaceValues gold = conductor_values(0.42, 2.35, Distribution::Ggx, 0.3, Scattering::Single);
 /// Reflects all but 1e-6 at any angle: IOR 0.
-const ConductorValues perfect{1e-9, 5.0, Distribution::Ggx, 0.4, Scattering::Multiple};
+const SurfaceValues perfect = conductor_values(1e-9, 5.0, Distribution::Ggx, 0.4);
 const std::complex<double> gold_index{0.42, 2.35};
 
-ConductorValues smoothed(ConductorValues c) {
+SurfaceValues smoothed(SurfaceValues c) {
     c.alpha = 0.0;
     return c;
 }
@@ -81,10 +81,10 @@ TEST(WeidlichWilkieParts, Case17BareConductorIsTorranceAndSparrow) {
         return 0.5 * (std::sqrt(1.0 + a2 * (1.0 / (c * c) - 1.0)) - 1.0);
     };
     const double d = a2 / (M_PI * q * q), g = 1.0 / (1.0 + lambda(wi.z) + lambda(wo.z));
-    EXPECT_NEAR(WeidlichWilkie::conductor({}, gold, wi, wo),
+    EXPECT_NEAR(WeidlichWilkie::conductor(stack_of({}, gold), wi, wo),
                 fresnel(vdoth, gold_index) * d * g / (4 * wi.z * wo.z), 1e-12);
-    EXPECT_EQ(WeidlichWilkie::conductor_delta({}, gold, 0.5), 0.0);
-    EXPECT_EQ(WeidlichWilkie::specular({}, wi, wo), 0.0);
+    EXPECT_EQ(WeidlichWilkie::conductor_delta(stack_of({}, gold), 0.5), 0.0);
+    EXPECT_EQ(WeidlichWilkie::specular(stack_of({}), wi, wo), 0.0);
 }
 
 TEST(WeidlichWilkieParts, Case17SmoothConductorUnderASmoothLayerIsTwoMirrors) {
@@ -92,12 +92,13 @@ TEST(WeidlichWilkieParts, Case17SmoothConductorUnderASmoothLayerIsTwoMirrors) {
     for (const double theta : {0.0, 40.0, 80.0}) {
         const double c = cos_deg(theta), inner = std::sqrt(n * n - 1.0 + c * c) / n;
         const double through = std::pow((1.0 - fresnel(c, n)) * std::exp(-tau / inner), 2);
-        EXPECT_NEAR(WeidlichWilkie::conductor_delta({slab(n, tau)}, smoothed(gold), c),
+        EXPECT_NEAR(WeidlichWilkie::conductor_delta(stack_of({slab(n, tau)}, smoothed(gold)), c),
                     through * fresnel(inner, gold_index / n), 1e-12)
             << theta;
-        EXPECT_NEAR(WeidlichWilkie::specular_delta({slab(n, tau)}, c), fresnel(c, n), 1e-12);
+        EXPECT_NEAR(WeidlichWilkie::specular_delta(stack_of({slab(n, tau)}), c), fresnel(c, n),
+                    1e-12);
     }
-    EXPECT_EQ(WeidlichWilkie::conductor({}, smoothed(gold), test::direction_deg(20, 0),
+    EXPECT_EQ(WeidlichWilkie::conductor(stack_of({}, smoothed(gold)), test::direction_deg(20, 0),
                                         test::direction_deg(20, 180)),
               0.0);
 }
@@ -106,14 +107,16 @@ TEST(WeidlichWilkieParts, FilmOfNoThicknessIsNone) {
     LayerValues bare = rough(1.6, 0.2, Distribution::Beckmann, Scattering::Single), film = bare;
     film.film = {0.0, 1.3};
     film.wavelength_nm = 500.0;
-    ConductorValues coated = gold;
+    SurfaceValues coated = gold;
     coated.film = {0.0, 1.3};
     coated.wavelength_nm = 500.0;
     const Vec3 wi = test::direction_deg(30, 0), wo = test::direction_deg(55, 100);
-    EXPECT_EQ(WeidlichWilkie::specular({film}, wi, wo), WeidlichWilkie::specular({bare}, wi, wo));
-    EXPECT_EQ(WeidlichWilkie::way_in({film}, wi, wo), WeidlichWilkie::way_in({bare}, wi, wo));
-    EXPECT_EQ(WeidlichWilkie::conductor({bare}, coated, wi, wo),
-              WeidlichWilkie::conductor({bare}, gold, wi, wo));
+    EXPECT_EQ(WeidlichWilkie::specular(stack_of({film}), wi, wo),
+              WeidlichWilkie::specular(stack_of({bare}), wi, wo));
+    EXPECT_EQ(WeidlichWilkie::way_in(stack_of({film}), wi, wo),
+              WeidlichWilkie::way_in(stack_of({bare}), wi, wo));
+    EXPECT_EQ(WeidlichWilkie::conductor(stack_of({bare}, coated), wi, wo),
+              WeidlichWilkie::conductor(stack_of({bare}, gold), wi, wo));
 }
 
 TEST(WeidlichWilkieParts, QuarterWaveFilmIsTheKnownCoating) {
@@ -122,10 +125,10 @@ TEST(WeidlichWilkieParts, QuarterWaveFilmIsTheKnownCoating) {
     glass.wavelength_nm = 550.0;
     // (n - nf^2)^2 / (n + nf^2)^2, textbook
     const double r = std::pow((1.52 - 1.38 * 1.38) / (1.52 + 1.38 * 1.38), 2);
-    EXPECT_NEAR(WeidlichWilkie::specular_delta({glass}, 1.0), r, 1e-12);
+    EXPECT_NEAR(WeidlichWilkie::specular_delta(stack_of({glass}), 1.0), r, 1e-12);
     const Vec3 up = test::direction_deg(0, 0);
-    EXPECT_NEAR(WeidlichWilkie::way_in({glass}, up, up), 1.0 - r, 1e-12);
-    EXPECT_NEAR(WeidlichWilkie::way_out({glass}, up, up), 1.0 - r, 1e-12);
+    EXPECT_NEAR(WeidlichWilkie::way_in(stack_of({glass}), up, up), 1.0 - r, 1e-12);
+    EXPECT_NEAR(WeidlichWilkie::way_out(stack_of({glass}), up, up), 1.0 - r, 1e-12);
 }
 
 TEST(WeidlichWilkieParts, FlakesReflectTheirShareAndLetTheRestPass) {
@@ -133,14 +136,14 @@ TEST(WeidlichWilkieParts, FlakesReflectTheirShareAndLetTheRestPass) {
     paint.flake_coverage = 0.3;
     paint.flakes = gold;
     const Vec3 wi = test::direction_deg(25, 0), wo = test::direction_deg(40, 170);
-    const double as_substrate = WeidlichWilkie::conductor({slab(1.5, 0.1)}, gold, wi, wo);
-    EXPECT_NEAR(WeidlichWilkie::specular({paint}, wi, wo), 0.3 * as_substrate, 1e-12);
-    EXPECT_NEAR(WeidlichWilkie::way_in({paint}, wi, wo),
-                0.7 * WeidlichWilkie::way_in({slab(1.5, 0.1)}, wi, wo), 1e-14);
+    const double as_substrate = WeidlichWilkie::conductor(stack_of({slab(1.5, 0.1)}, gold), wi, wo);
+    EXPECT_NEAR(WeidlichWilkie::specular(stack_of({paint}), wi, wo), 0.3 * as_substrate, 1e-12);
+    EXPECT_NEAR(WeidlichWilkie::way_in(stack_of({paint}), wi, wo),
+                0.7 * WeidlichWilkie::way_in(stack_of({slab(1.5, 0.1)}), wi, wo), 1e-14);
     paint.flakes = smoothed(gold);
-    EXPECT_NEAR(WeidlichWilkie::specular_delta({paint}, 0.8),
-                fresnel(0.8, 1.5) +
-                    0.3 * WeidlichWilkie::conductor_delta({slab(1.5, 0.1)}, smoothed(gold), 0.8),
+    EXPECT_NEAR(WeidlichWilkie::specular_delta(stack_of({paint}), 0.8),
+                fresnel(0.8, 1.5) + 0.3 * WeidlichWilkie::conductor_delta(
+                                              stack_of({slab(1.5, 0.1)}, smoothed(gold)), 0.8),
                 1e-12);
 }
 
@@ -152,16 +155,16 @@ TEST(WeidlichWilkieParts, MatchedSlabScattersOnceAsHanrahanAndKrueger) {
     const double depth = tau + own;
     const double expected =
         own / depth * phase / (wi.z + wo.z) * (1 - std::exp(-depth * (1 / wi.z + 1 / wo.z)));
-    EXPECT_NEAR(WeidlichWilkie::specular({slab(1.0, tau, own, g)}, wi, wo), expected, 1e-14);
-    EXPECT_NEAR(WeidlichWilkie::way_in({slab(1.0, tau, own, g)}, wi, wo), std::exp(-depth / wi.z),
+    EXPECT_NEAR(WeidlichWilkie::specular(stack_of({slab(1.0, tau, own, g)}), wi, wo), expected,
                 1e-14);
+    EXPECT_NEAR(WeidlichWilkie::way_in(stack_of({slab(1.0, tau, own, g)}), wi, wo),
+                std::exp(-depth / wi.z), 1e-14);
     // thin: every photon that meets a particle leaves, half of it upwards for g = 0
     const double thin = 1e-5;
-    const double up = albedo(
-        [&](const Vec3& i, const Vec3& o) {
-            return WeidlichWilkie::specular({slab(1.0, 0.0, thin)}, i, o);
-        },
-        test::direction_deg(20, 0));
+    const StackElements film = stack_of({slab(1.0, 0.0, thin)});
+    const double up =
+        albedo([&](const Vec3& i, const Vec3& o) { return WeidlichWilkie::specular(film, i, o); },
+               test::direction_deg(20, 0));
     EXPECT_NEAR(up / (0.5 * thin / cos_deg(20)), 1.0, 2e-3); // midpoint rule
 }
 
@@ -171,8 +174,8 @@ TEST(WeidlichWilkieParts, OrenNayarActsAtTheRefractedDirections) {
     const double si = std::sin(50 * M_PI / 180) / n, so = std::sin(70 * M_PI / 180) / n;
     const double a = 1 - 0.5 * 0.25 / (0.25 + 0.33), b = 0.45 * 0.25 / (0.25 + 0.09);
     const double expected = a + b * cos_deg(30) * so * si / std::sqrt(1 - si * si);
-    EXPECT_NEAR(WeidlichWilkie::diffuse_shape({slab(n)}, sigma, wi, wo), expected, 1e-12);
-    EXPECT_EQ(WeidlichWilkie::diffuse_shape({slab(n)}, 0.0, wi, wo), 1.0);
+    EXPECT_NEAR(WeidlichWilkie::diffuse_shape(stack_of({slab(n)}), sigma, wi, wo), expected, 1e-12);
+    EXPECT_EQ(WeidlichWilkie::diffuse_shape(stack_of({slab(n)}), 0.0, wi, wo), 1.0);
 }
 
 TEST(WeidlichWilkieParts, Case29IsReciprocal) {
@@ -182,20 +185,22 @@ TEST(WeidlichWilkieParts, Case29IsReciprocal) {
     paint.anisotropy = 0.4;
     paint.flake_coverage = 0.2;
     paint.flakes = gold;
-    const StackValues stack{paint, rough(1.3, 0.4)};
-    const WeidlichWilkieResidual residual(stack, perfect);
+    const StackValues layers{paint, rough(1.3, 0.4)};
+    const StackElements stack = stack_of(layers);
+    const WeidlichWilkieResidual residual(stack_of(layers, perfect));
     const Vec3 wi = test::direction_deg(65, 0), wo = test::direction_deg(15, 80);
     const auto both = [&](const auto& f) { EXPECT_NEAR(f(wi, wo) / f(wo, wi), 1.0, 1e-12); };
     both([&](const Vec3& i, const Vec3& o) { return WeidlichWilkie::specular(stack, i, o); });
-    both(
-        [&](const Vec3& i, const Vec3& o) { return WeidlichWilkie::conductor(stack, gold, i, o); });
+    both([&](const Vec3& i, const Vec3& o) {
+        return WeidlichWilkie::conductor(stack_of(layers, gold), i, o);
+    });
     both([&](const Vec3& i, const Vec3& o) { return residual.value(i.z, o.z); });
 }
 
 TEST(WeidlichWilkieParts, MultipleScatteringOfARoughInterfaceFollowsItsOperator) {
     for (const Distribution d : {Distribution::Ggx, Distribution::Beckmann, Distribution::Blinn}) {
         for (const double ior : {1.5, 1.0 / 1.5}) {
-            const StackValues stack{rough(ior, 0.8, d)};
+            const StackElements stack = stack_of({rough(ior, 0.8, d)});
             const auto operator_of = adding_transport(stack);
             const WeidlichWilkieResidual residual(stack);
             for (const double theta : {0.0, 45.0, 70.0}) {
@@ -217,14 +222,15 @@ TEST(WeidlichWilkieParts, MultipleScatteringOfARoughInterfaceFollowsItsOperator)
 
 TEST(WeidlichWilkieParts, PerfectRoughConductorReflectsEverything) {
     for (const Distribution d : {Distribution::Ggx, Distribution::Beckmann, Distribution::Blinn}) {
-        ConductorValues mirror = perfect;
+        SurfaceValues mirror = perfect;
         mirror.distribution = d;
-        const WeidlichWilkieResidual residual({}, mirror);
+        const StackElements stack = stack_of({}, mirror);
+        const WeidlichWilkieResidual residual(stack);
         for (const double theta : {0.0, 45.0, 75.0}) {
             const Vec3 wi = test::direction_deg(theta, 0);
             const double lobe =
                 albedo([&](const Vec3& i,
-                           const Vec3& o) { return WeidlichWilkie::conductor({}, mirror, i, o); },
+                           const Vec3& o) { return WeidlichWilkie::conductor(stack, i, o); },
                        wi);
             // lobe_albedo is good to 1e-3
             EXPECT_NEAR(lobe + residual(wi.z), 1.0, 2e-3) << kernel_distribution(d) << theta;
@@ -235,8 +241,9 @@ TEST(WeidlichWilkieParts, PerfectRoughConductorReflectsEverything) {
 
 TEST(WeidlichWilkieParts, RoughMetalReflectsWhatTheWalkBetweenItsFacetsSays) {
     for (const Distribution d : {Distribution::Ggx, Distribution::Beckmann}) {
-        ConductorValues metal{0.3, 3.0, d, 0.6, Scattering::Multiple};
-        const WeidlichWilkieResidual residual({}, metal);
+        const SurfaceValues metal = conductor_values(0.3, 3.0, d, 0.6);
+        const StackElements stack = stack_of({}, metal);
+        const WeidlichWilkieResidual residual(stack);
         SubstrateValues substrate;
         substrate.conductor = {metal};
         const LayerWalk walk({}, substrate, {550.0});
@@ -244,7 +251,7 @@ TEST(WeidlichWilkieParts, RoughMetalReflectsWhatTheWalkBetweenItsFacetsSays) {
             const Vec3 wi = test::direction_deg(theta, 0);
             const double lobe =
                 albedo([&](const Vec3& i,
-                           const Vec3& o) { return WeidlichWilkie::conductor({}, metal, i, o); },
+                           const Vec3& o) { return WeidlichWilkie::conductor(stack, i, o); },
                        wi);
             const WalkEstimate truth = estimate_walk(walk, wi, {}, 16384, 5);
             // one mean reflectance for all angles at facets costs 2e-3 here; 5.5 standard errors
@@ -258,19 +265,20 @@ TEST(WeidlichWilkieParts, RoughMetalReflectsWhatTheWalkBetweenItsFacetsSays) {
 }
 
 TEST(WeidlichWilkieParts, SingleScatteringHasNoResidual) {
-    const WeidlichWilkieResidual residual({rough(1.5, 0.4, Distribution::Ggx, Scattering::Single)},
-                                          gold);
+    const WeidlichWilkieResidual residual(
+        stack_of({rough(1.5, 0.4, Distribution::Ggx, Scattering::Single)}, gold));
     EXPECT_EQ(residual.average(), 0.0);
     EXPECT_EQ(residual.value(0.5, 0.7), 0.0);
 }
 
 TEST(WeidlichWilkieParts, ResidualBelowALayerIsDimmedByIt) {
-    const WeidlichWilkieResidual bare({}, perfect), under({slab(1.0, 0.5)}, perfect);
+    const WeidlichWilkieResidual bare(stack_of({}, perfect)),
+        under(stack_of({slab(1.0, 0.5)}, perfect));
     // index matched: V = exp(-tau / c) and e between its largest value and none
     EXPECT_LT(under(1.0), bare(1.0) * std::exp(-1.0) * 1.0001);
     EXPECT_GT(under(1.0), 0.0);
     LayerValues sheet = slab(1.0);
     sheet.flake_coverage = 0.5;
     sheet.flakes = smoothed(gold);
-    EXPECT_NEAR(WeidlichWilkieResidual({sheet}, perfect)(0.7), 0.25 * bare(0.7), 1e-12);
+    EXPECT_NEAR(WeidlichWilkieResidual(stack_of({sheet}, perfect))(0.7), 0.25 * bare(0.7), 1e-12);
 }

@@ -3,7 +3,7 @@
 #include "host/layers/models/effective_matrix.h"
 #include "host/layers/stack/quadrature.h"
 #include "host/layers/walk/walk_estimate.h"
-#include "reradiant/adding.h"
+#include "reradiant/stack_model.h"
 #include "tests/support/directions.h"
 
 #include <cmath>

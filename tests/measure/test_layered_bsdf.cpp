@@ -1,10 +1,14 @@
 // The triple eval, sample, pdf of layered materials: chi-square of directions over half vectors,
 // and reflectances found by sampling against those of the goniophotometer.
-#include "host/measure/layered_bsdf.h"
+#include "host/layers/models/adding.h"
+#include "host/layers/models/layered_bsdf.h"
+#include "host/layers/models/weidlich_wilkie_bsdf.h"
+#include "host/layers/stack/directions.h"
 #include "host/measure/measure_substrate.h"
-#include "host/measure/surface_angles.h"
+#include "host/scene/model/closed_model.h"
 #include "reradiant/error.h"
 #include "reradiant/measure.h"
+#include "tests/layers/layer_values.h"
 #include "tests/support/full_run.h"
 #include "tests/support/private_cache.h"
 #include "tests/support/statistics.h"
@@ -45,7 +49,7 @@ SubstrateValues grey(double reflectance, double sigma = 0.0) {
 }
 SubstrateValues metal(double alpha, Distribution distribution = Distribution::Ggx) {
     SubstrateValues substrate;
-    substrate.conductor = {{0.3, 3.0, distribution, alpha, Scattering::Multiple}};
+    substrate.conductor = {conductor_values(0.3, 3.0, distribution, alpha)};
     return substrate;
 }
 
@@ -156,13 +160,13 @@ std::vector<Case> sampling_cases() {
             const LayerStack two{{layer(1.5, alpha, d), layer(1.3, 0.3, d)}};
             const LayerStack smooth{{layer(1.5, 0.0, d)}};
             if (d != Distribution::Blinn || degrees == 10.0)
-                cases.push_back({name + ", adding", alpha, {rough, grey(0.5), one, Model::Adding}});
+                cases.push_back({name + ", adding", alpha, {rough, grey(0.5), one, adding_bsdf}});
             cases.push_back({name + ", weidlich-wilkie",
                              alpha,
-                             {two, grey(0.2, 0.4), one, Model::WeidlichWilkie}});
+                             {two, grey(0.2, 0.4), one, weidlich_wilkie_bsdf}});
             cases.push_back({name + ", metal",
                              std::min(1.0, 1.5 * alpha),
-                             {smooth, metal(alpha, d), one, Model::WeidlichWilkie}});
+                             {smooth, metal(alpha, d), one, weidlich_wilkie_bsdf}});
         }
     }
     return cases;
@@ -206,8 +210,8 @@ TEST(LayeredBsdf, SamplesFollowTheirPdf) {
 }
 
 TEST(LayeredBsdf, AWidthOrAJacobianThatIsOnePercentOffFailsTheTest) {
-    const LayeredBsdf right({}, metal(0.2), one, Model::WeidlichWilkie);
-    const LayeredBsdf wrong({}, metal(0.202), one, Model::WeidlichWilkie);
+    const LayeredBsdf right({}, metal(0.2), one, weidlich_wilkie_bsdf);
+    const LayeredBsdf wrong({}, metal(0.202), one, weidlich_wilkie_bsdf);
     const double bound = test::sidak_bound(1);
     const int count = 3000000;
     EXPECT_LT(chi_square_sigmas(right, right, 45.0, 0.2, count), bound);
@@ -241,7 +245,7 @@ TEST(LayeredBsdf, SampledAlbedoIsTheHemisphericalMeasure) {
     const double bound = test::sidak_bound(static_cast<int>(materials.size()) * 3);
     for (std::size_t k = 0; k < materials.size(); ++k) {
         const auto& [stack, substrate, model] = materials[k];
-        const LayeredBsdf bsdf(stack, substrate, one, model);
+        const LayeredBsdf bsdf(stack, substrate, one, closed_model(model));
         MeasureRequest request;
         request.model = model;
         request.hemispherical = true;
@@ -267,7 +271,7 @@ TEST(LayeredBsdf, EvalIsWhatTheGoniophotometerSees) {
     const WavelengthGrid two{400, 100, 2};
     const LayerStack stack{{layer(1.5, 0.3, Distribution::Ggx)}};
     for (const Model model : {Model::Adding, Model::WeidlichWilkie}) {
-        const LayeredBsdf bsdf(stack, substrate, two, model);
+        const LayeredBsdf bsdf(stack, substrate, two, closed_model(model));
         MeasureRequest request;
         request.model = model;
         request.theta_i_deg = {40};
@@ -284,6 +288,6 @@ TEST(LayeredBsdf, EvalIsWhatTheGoniophotometerSees) {
 }
 
 TEST(LayeredBsdf, OnlyClosedModelsHaveIt) {
-    EXPECT_THROW(LayeredBsdf({}, grey(0.5), one, Model::Walk), Error);
-    EXPECT_THROW(LayeredBsdf({}, metal(0.1), one, Model::Adding), Error);
+    EXPECT_THROW(closed_model(Model::Walk), Error);
+    EXPECT_THROW(LayeredBsdf({}, metal(0.1), one, adding_bsdf), Error);
 }

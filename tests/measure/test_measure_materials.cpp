@@ -1,11 +1,11 @@
-#include "host/measure/lobe_quadrature.h"
+#include "host/layers/stack/directions.h"
+#include "host/layers/stack/lobe_quadrature.h"
 #include "host/measure/measure_substrate.h"
-#include "host/measure/surface_angles.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
-#include "reradiant/adding.h"
 #include "reradiant/error.h"
 #include "reradiant/measure.h"
+#include "tests/layers/layer_values.h"
 #include "tests/support/private_cache.h"
 
 #include <Eigen/Core>
@@ -43,7 +43,7 @@ SubstrateValues oren_nayar(double reflectance, double sigma) {
 }
 SubstrateValues conductor(double ior, double kappa, double alpha,
                           Distribution d = Distribution::Ggx, Scattering s = Scattering::Multiple) {
-    return {{}, 0.0, {{ior, kappa, d, alpha, s}}};
+    return {{}, 0.0, {conductor_values(ior, kappa, d, alpha, s)}};
 }
 
 MeasureRequest hemispherical(Model model, std::vector<double> thetas) {

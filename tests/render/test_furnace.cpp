@@ -1,5 +1,5 @@
 #include "host/layers/models/effective_matrix.h"
-#include "reradiant/adding.h"
+#include "reradiant/stack_model.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "host/layers/models/effective_matrix.h"
 #include "host/layers/models/weidlich_wilkie.h"
-#include "reradiant/adding.h"
+#include "reradiant/stack_model.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -95,7 +95,7 @@ TEST(LightTransport, WeidlichWilkieMatchesItsDoubleTwin) {
             return kernels::vec3(s * std::cos(phi * pi / 180.0), s * std::sin(phi * pi / 180.0),
                                  cosine(theta));
         };
-        const StackValues stack = stack_at(m.stack, 520.0);
+        const StackElements stack = stack_at(m.stack, 520.0);
         const kernels::Vec3 wi = direction(30, 90), wo = direction(40, 0);
         const double f = WeidlichWilkie::specular(stack, wi, wo) +
                          WeidlichWilkie::way_in(stack, wi, wo) * 0.6 *
@@ -115,7 +115,7 @@ TEST(LightTransport, DispersiveWeidlichWilkieGoesInAndOutAtItsOwnWavelengths) {
     const kernels::Vec3 wi = kernels::vec3(0, s30, cosine(30)),
                         wo = kernels::vec3(s40, 0, cosine(40));
     for (int o = 0; o < matrix.emission.count; ++o) {
-        const StackValues out = stack_at(m.stack, matrix.emission.centre_nm(o));
+        const StackElements out = stack_at(m.stack, matrix.emission.centre_nm(o));
         double f = WeidlichWilkie::specular(out, wi, wo);
         for (int i = 0; i < matrix.excitation.count; ++i)
             f += WeidlichWilkie::way_out(out, wi, wo) * matrix.values(o, i) / pi *

@@ -1,6 +1,7 @@
 // Every kind of material: what the renderer shows of it is what `measure` says of it.
+#include "host/layers/models/layered_bsdf.h"
 #include "host/measure/measure_substrate.h"
-#include "host/measure/surface_model.h"
+#include "host/scene/model/closed_model.h"
 #include "reradiant/measure.h"
 #include "reradiant/reradiation.h"
 #include "tests/render/test_scenes.h"
@@ -25,11 +26,8 @@ struct Geometry {
 };
 constexpr Geometry geometries[] = {{40, 30, 90}, {50, 35, 170}};
 
-std::unique_ptr<SurfaceModel> surface_model(const Material& m, Model model,
-                                            const WavelengthGrid& grid) {
-    const SubstrateValues substrate = measured_substrate(m.substrate, grid);
-    return model == Model::WeidlichWilkie ? weidlich_wilkie_surface(m.stack, substrate, grid)
-                                          : adding_surface(m.stack, substrate, grid);
+LayeredBsdf bsdf_of(const Material& m, Model model, const WavelengthGrid& grid) {
+    return {m.stack, measured_substrate(m.substrate, grid), grid, closed_model(model)};
 }
 
 RenderResult render_plane(const Material& m, Model model, const WavelengthGrid& grid,
@@ -51,7 +49,7 @@ RenderResult render_plane(const Material& m, Model model, const WavelengthGrid& 
 /// of alpha 0.2 turns into 1e-4 on its flank.
 void expect_as_measured(const char* what, const Material& m, Model model,
                         const WavelengthGrid& grid = bands, double tolerance = 3e-4) {
-    const std::unique_ptr<SurfaceModel> surface = surface_model(m, model, grid);
+    const LayeredBsdf bsdf = bsdf_of(m, model, grid);
     for (const Geometry& at : geometries) {
         const auto direction = [](double theta, double phi) {
             const double s = std::sin(radians(theta));
@@ -61,10 +59,9 @@ void expect_as_measured(const char* what, const Material& m, Model model,
         const kernels::Vec3 wi = direction(at.incidence, at.phi), wo = direction(at.view, 0.0);
         const RenderResult result = render_plane(m, model, grid, at);
         EXPECT_EQ(result.non_finite, 0u) << what;
-        const Eigen::MatrixXd diffuse = surface->diffuse(wi, wo);
+        const Eigen::MatrixXd values = bsdf.eval(wi, wo);
         for (int band = 0; band < grid.count; ++band) {
-            const double f = diffuse.row(band).sum() + surface->specular(band, wi, wo);
-            const double expected = f * std::cos(radians(at.incidence));
+            const double expected = values.row(band).sum() * std::cos(radians(at.incidence));
             EXPECT_NEAR(band_statistics(result.image, band).mean, expected, tolerance * expected)
                 << what << ", " << model_name(model) << ", band " << band << ", phi " << at.phi;
         }
@@ -189,6 +186,11 @@ TEST(Materials, ScatteringSlabsAreAsMeasured) {
     }
     expect_as_measured("over a metal", on_metal({scattering(1.5, 0.0, 0.7)}, metal(0.25)),
                        Model::WeidlichWilkie);
+    for (const double alpha : {0.0, 0.25}) {
+        Layer filmed = scattering(1.5, alpha, 0.5);
+        filmed.film = ThinFilm{250.0, Spectrum::constant(1.8)};
+        expect_as_measured("beneath a film", material({filmed}, 0.4), Model::WeidlichWilkie);
+    }
 }
 
 TEST(Materials, DispersiveWeidlichWilkieIsAsMeasured) {
@@ -210,11 +212,11 @@ TEST(Materials, SmoothMetalsMirrorTheirSurroundings) {
         options.wavelengths.centred = true;
         options.all_features = true;
         const RenderResult result = render(scene, device(), options);
-        const auto surface = surface_model(m, Model::WeidlichWilkie, bands);
+        const LayeredBsdf bsdf = bsdf_of(m, Model::WeidlichWilkie, bands);
         for (int band = 0; band < bands.count; ++band) {
             const double c = std::cos(radians(50.0));
-            const double front = surface->specular_delta(band, c),
-                         metal_once = surface->substrate_delta(band, c);
+            const double front = bsdf.at(band).specular_delta(c),
+                         metal_once = bsdf.at(band).conductor_delta(c);
             // weidlich-wilkie sees the metal once; between it and the coat light goes to and fro.
             const double again = front * metal_once / ((1.0 - front) * (1.0 - front));
             const double expected = front + metal_once / (1.0 - again);
@@ -237,11 +239,11 @@ void expect_furnace_as_measured(const char* what, const Material& m, double view
     options.wavelengths.centred = true;
     options.all_features = true;
     const RenderResult result = render(scene, device(), options);
-    const auto surface = surface_model(m, Model::Adding, bands);
+    const LayeredBsdf bsdf = bsdf_of(m, Model::Adding, bands);
     const double c = std::cos(radians(view));
-    const Eigen::MatrixXd diffuse = surface->hemispherical_diffuse(c);
+    const Eigen::MatrixXd diffuse = bsdf.diffuse_albedo(c);
     for (int band = 0; band < bands.count; ++band) {
-        const double expected = diffuse.row(band).sum() + surface->hemispherical_specular(band, c);
+        const double expected = diffuse.row(band).sum() + bsdf.at(band).specular_albedo(c);
         const BandStatistics found = band_statistics(result.image, band);
         // 1e-3: the angular tables of rough stacks, as in the white furnace
         EXPECT_NEAR(found.mean, expected,

@@ -1,5 +1,6 @@
 // Adding against the random walk, as Markdown tables: BRRDFs of stacks over a bispectral
 // Lambertian substrate, the white furnace with what `single` loses, and reciprocity.
+#include "host/layers/stack/directions.h"
 #include "tests/layers/walk_stacks.h"
 #include "tests/support/statistics.h"
 
@@ -105,19 +106,16 @@ void compare_models() {
 }
 
 /// 2 integral c T dc / n^2: share of a diffuse exitance that leaves through the stack.
-double adding_escape(const StackValues& stack) {
+double adding_escape(const StackElements& stack) {
     const auto t = adding_transport(stack);
     const double n = t->lowest_ior();
-    std::vector<double> breaks;
-    for (const LayerValues& layer : stack)
-        breaks.push_back(std::sqrt(std::fabs((layer.ior - 1.0) * (layer.ior + 1.0))));
-    return integrate_pieces(breaks_between_0_and_1(breaks), 64,
+    return integrate_pieces(breaks_in_air(stack), 64,
                             [&](double c) { return 2.0 * c * t->transmission(c); }) /
            (n * n);
 }
 
 /// Albedo over a white Lambertian substrate by adding.
-double adding_albedo(const StackValues& stack, double cosine) {
+double adding_albedo(const StackElements& stack, double cosine) {
     const auto t = adding_transport(stack);
     return t->specular_albedo(cosine) +
            t->transmission(cosine) * adding_escape(stack) / (1.0 - t->internal_reflectance());
@@ -192,7 +190,7 @@ void reciprocity() {
             layer.scattering = Scattering::Multiple;
         }
         // of the same stack without losses, where what does not come back gets out
-        const StackValues lossless = stack_at(stack, 550.0);
+        const StackElements lossless = stack_at(stack, 550.0);
         const double excess =
             adding_escape(lossless) / (1.0 - adding_transport(lossless)->internal_reflectance()) -
             1.0;

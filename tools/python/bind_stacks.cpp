@@ -1,8 +1,8 @@
 #include "host/layers/models/effective_matrix.h"
 #include "host/report/svg.h"
 #include "host/scene/toml/stack_file.h"
-#include "reradiant/adding.h"
 #include "reradiant/scene_file.h"
+#include "reradiant/stack_model.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
 #include "tools/python/values.h"
@@ -37,8 +37,7 @@ StackPointer load(const py::object& argument) {
 /// One quantity of the stack above the substrate, (angle, wavelength).
 Rows table_of(const LayerStack& stack, const std::vector<double>& theta_deg,
               const std::vector<double>& nm,
-              const std::function<double(const AddingTransport&, double)>& quantity,
-              StopFlag stop) {
+              const std::function<double(const StackModel&, double)>& quantity, StopFlag stop) {
     Rows table(static_cast<Eigen::Index>(theta_deg.size()), static_cast<Eigen::Index>(nm.size()));
     for (Eigen::Index k = 0; k < table.cols(); ++k) {
         throw_if_stopped(stop);
@@ -54,7 +53,7 @@ Rows transmission(const LayerStack& stack, const Doubles& theta_deg, const Doubl
     return interruptible([&](StopFlag stop) {
         return table_of(
             stack, angles, bands,
-            [](const AddingTransport& t, double cosine) { return t.transmission(cosine); }, stop);
+            [](const StackModel& t, double cosine) { return t.transmission(cosine); }, stop);
     });
 }
 
@@ -63,8 +62,7 @@ Rows specular_albedo(const LayerStack& stack, const Doubles& theta_deg, const Do
     return interruptible([&](StopFlag stop) {
         return table_of(
             stack, angles, bands,
-            [](const AddingTransport& t, double cosine) { return t.specular_albedo(cosine); },
-            stop);
+            [](const StackModel& t, double cosine) { return t.specular_albedo(cosine); }, stop);
     });
 }
 
@@ -73,7 +71,7 @@ Eigen::VectorXd internal_reflectance(const LayerStack& stack, const Doubles& nm)
     return interruptible([&](StopFlag stop) -> Eigen::VectorXd {
         return table_of(
                    stack, {0.0}, bands,
-                   [](const AddingTransport& t, double) { return t.internal_reflectance(); }, stop)
+                   [](const StackModel& t, double) { return t.internal_reflectance(); }, stop)
             .transpose();
     });
 }

@@ -1,7 +1,7 @@
 #include "host/fit/stack/stack_response.h"
 
-#include "reradiant/adding.h"
 #include "reradiant/error.h"
+#include "reradiant/stack_model.h"
 
 #include <Eigen/LU>
 #include <fmt/core.h>
@@ -17,7 +17,7 @@ namespace reradiant {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-using Transports = std::vector<std::shared_ptr<const AddingTransport>>;
+using Transports = std::vector<std::shared_ptr<const StackModel>>;
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
@@ -27,12 +27,12 @@ double cosine(double degrees) {
 
 Transports transports_on(const LayerStack& stack, const WavelengthGrid& grid) {
     Transports transports;
-    StackValues last;
+    StackElements last;
     for (int band = 0; band < grid.count; ++band) {
-        const StackValues values = stack_at(stack, grid.centre_nm(band));
+        StackElements values = stack_at(stack, grid.centre_nm(band));
         transports.push_back(band > 0 && values == last ? transports.back()
                                                         : adding_transport(values));
-        last = values;
+        last = std::move(values);
     }
     return transports;
 }
@@ -96,7 +96,7 @@ StackResponse stack_response(const LayerStack& stack, const BispectralData& data
         Eigen::VectorXd out(data.emission.count);
         Eigen::RowVectorXd in(data.excitation.count);
         for (Eigen::Index o = 0; o < out.size(); ++o) {
-            const AddingTransport& t = *transports[first_out + static_cast<std::size_t>(o)];
+            const StackModel& t = *transports[first_out + static_cast<std::size_t>(o)];
             out(o) = t.transmission(cosine(block.geometry->theta_o_deg)) /
                      (t.lowest_ior() * t.lowest_ior());
         }

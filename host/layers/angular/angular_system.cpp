@@ -10,66 +10,58 @@
 
 namespace reradiant {
 
-bool is_rough_interface(const StackValues& stack, std::size_t index) {
-    const double above = index == 0 ? 1.0 : stack[index - 1].ior;
-    const double below = stack[index].ior;
-    const double ratio = std::max(above, below) / std::min(above, below);
-    return stack[index].alpha > 0.0 && ratio - 1.0 > 5e-5;
-}
-
-AngularSystem::AngularSystem(const StackValues& stack, std::size_t count) {
-    std::vector<SmoothStack> piles; // above, between and below the scatterers
-    std::size_t first_medium = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-        if (is_rough_interface(stack, k)) {
-            piles.push_back(smooth_media(stack, first_medium, k));
-            add_interface(stack, k);
-            first_medium = k + 1;
-        }
-        if (stack[k].tau_scattering > 0.0) {
-            piles.push_back(smooth_media(stack, first_medium, k + 1));
-            add_slab(stack[k]);
-            first_medium = k + 1;
-        }
+AngularSystem::AngularSystem(std::span<const StackElement> stack) {
+    std::vector<SmoothStack> piles; // above and between the scatterers
+    std::size_t first = 0;          // of the run of elements since the last scatterer
+    double ior = 1.0;               // of the medium beneath that
+    for (std::size_t k = 0; k < stack.size(); ++k) {
+        if (!scatters(stack[k]))
+            continue;
+        piles.push_back(smooth_pile(ior, stack.subspan(first, k - first)));
+        if (const auto* slab = std::get_if<SlabValues>(&stack[k]))
+            add_slab(*slab);
+        else
+            add_interface(std::get<SurfaceValues>(stack[k]));
+        first = k + 1;
+        ior = scatterers_.back().lower.ior;
     }
     for (std::size_t p = 0; p + 1 < scatterers_.size(); ++p) {
         between_.push_back(
             pile_between(piles[p + 1], scatterers_[p].lower, scatterers_[p + 1].upper));
     }
     top_media_ = piles.front();
-    bottom_media_ = smooth_media(stack, first_medium, count);
+    bottom_media_ = smooth_pile(ior, stack.subspan(first));
     air_ = air_pile(top_media_, scatterers_.front().upper);
 }
 
-void AngularSystem::add_slab(const LayerValues& layer) {
-    const double n = layer.ior;
+void AngularSystem::add_slab(const SlabValues& slab) {
+    const double n = slab.ior;
     const double critical = n > 1.0 ? std::sqrt((n - 1.0) * (n + 1.0)) / n : 0.0;
     const AngularGrid grid = make_angular_grid(n, critical, interface_cells);
-    const SlabOperator slab =
-        scattering_slab(grid, layer.tau, layer.tau_scattering, layer.anisotropy);
+    const SlabOperator op = scattering_slab(grid, slab.tau, slab.tau_scattering, slab.anisotropy);
     Scatterer scatterer{grid, grid, Eigen::MatrixXd(2 * grid.cells(), 2 * grid.cells())};
-    scatterer.response << slab.back, slab.through, slab.through, slab.back;
-    scatterer.depth = layer.tau + layer.tau_scattering;
+    scatterer.response << op.back, op.through, op.through, op.back;
+    scatterer.depth = slab.depth();
     scatterers_.push_back(std::move(scatterer));
 }
 
-void AngularSystem::add_interface(const StackValues& stack, std::size_t index) {
-    const LayerValues& layer = stack[index];
-    const double above = index == 0 ? 1.0 : stack[index - 1].ior;
-    const bool denser = layer.ior >= above;
-    const double ratio = denser ? layer.ior / above : above / layer.ior;
-    const auto op = interface_operator({ratio, layer.distribution, layer.alpha, layer.scattering});
+void AngularSystem::add_interface(const SurfaceValues& interface) {
+    const double above = interface.ior_above, below = interface.ior_below;
+    const bool denser = below >= above;
+    const double ratio = denser ? below / above : above / below;
+    const auto op =
+        interface_operator({ratio, interface.distribution, interface.alpha, interface.scattering});
     const Eigen::VectorXd e = op->etendue();
     const Eigen::MatrixXd shares = op->exchange * e.cwiseInverse().asDiagonal();
     const Eigen::Index n = op->above.cells();
-    Scatterer rough{op->above, op->below, shares, layer.scattering == Scattering::Single};
+    Scatterer rough{op->above, op->below, shares, interface.scattering == Scattering::Single};
     if (!denser) { // the operator is stored thinner side first; the surface looks alike from below
         std::swap(rough.upper, rough.lower);
         rough.response << shares.bottomRightCorner(n, n), shares.bottomLeftCorner(n, n),
             shares.topRightCorner(n, n), shares.topLeftCorner(n, n);
     }
     rough.upper.ior = above;
-    rough.lower.ior = layer.ior;
+    rough.lower.ior = below;
     if (scatterers_.empty() && denser)
         first_lobe_ = op->first_lobe;
     scatterers_.push_back(std::move(rough));

@@ -1,17 +1,13 @@
 #pragma once
 
 #include "host/layers/angular/angular_piles.h"
-#include "reradiant/layer_stack.h"
+#include "reradiant/stack_elements.h"
 
 #include <Eigen/Core>
 
 #include <vector>
 
 namespace reradiant {
-
-/// True when an interface is treated as rough: it has a width, and the media differ by more than
-/// the operators resolve (5e-5 of IOR; below that it neither reflects nor deflects visibly).
-bool is_rough_interface(const StackValues& stack, std::size_t index);
 
 /// `AngularShares` says where light ends up, by the cell of direction that it comes through. The
 /// substrate is black.
@@ -37,8 +33,8 @@ struct AngularResponse {
 /// at once by one LU of the value function (the adjoint), on the cells of both sides of them all.
 class AngularSystem {
 public:
-    /// Sets up the first `count` layers of the stack, of which something must scatter.
-    AngularSystem(const StackValues& stack, std::size_t count);
+    /// Sets up the elements above a substrate, some of which must scatter.
+    explicit AngularSystem(std::span<const StackElement> stack);
 
     /// Solves for all interreflections. `weight` is the factor with which the substrate weighs both
     /// what it sends out and what it receives; with 1, light is emitted diffusely and all of it
@@ -63,8 +59,8 @@ private:
         double depth = 0.0; ///< optical depth of a slab, scattering included
     };
 
-    void add_interface(const StackValues& stack, std::size_t index);
-    void add_slab(const LayerValues& layer);
+    void add_interface(const SurfaceValues& interface);
+    void add_slab(const SlabValues& slab);
     /// Values of outgoing flux as a linear function of the values of incoming flux.
     Eigen::MatrixXd coupling(const SubstratePile& substrate) const;
     Eigen::Index size() const;

@@ -1,7 +1,7 @@
 #include "host/layers/angular/angular_transport.h"
 
 #include "host/layers/angular/angular_system.h"
-#include "host/layers/models/oren_nayar_substrate.h"
+#include "host/layers/models/adding.h"
 #include "host/layers/rough/interface_walk.h"
 #include "host/layers/rough/specular_lobes.h"
 #include "host/layers/stack/quadrature.h"
@@ -63,24 +63,25 @@ private:
 };
 
 /// Counts scattering as absorption: the light that is left was not scattered.
-StackValues without_scattered(StackValues stack) {
-    for (LayerValues& layer : stack) {
-        layer.tau += layer.tau_scattering;
-        layer.tau_scattering = 0.0;
-    }
-    return stack;
+StackElements without_scattered(std::span<const StackElement> stack) {
+    StackElements absorbing(stack.begin(), stack.end());
+    for (StackElement& element : absorbing)
+        if (auto* slab = std::get_if<SlabValues>(&element)) {
+            slab->tau += slab->tau_scattering;
+            slab->tau_scattering = 0.0;
+        }
+    return absorbing;
 }
 
-class AngularTransport final : public AddingTransport {
+class AngularTransport final : public AddingModel {
 public:
-    explicit AngularTransport(const StackValues& stack)
-        : stack_(stack), unscattered_(without_scattered(stack)), system_(stack, stack.size()),
-          fit_(fit_of(system_.top_grid())) {
-        top_ = system_.top();
-        top_rough_ = top_.ior.size() == 1;
-        while (first_rough_ < stack.size() && !is_rough_interface(stack, first_rough_))
+    explicit AngularTransport(std::span<const StackElement> stack)
+        : AddingModel(stack), stack_(stack.begin(), stack.end()),
+          unscattered_(without_scattered(stack)), system_(stack), fit_(fit_of(system_.top_grid())),
+          top_(system_.top()), top_rough_(top_.ior.size() == 1) {
+        while (first_rough_ < stack_.size() && !is_rough(first_rough_))
             ++first_rough_;
-        lobe_top_ = smooth_media(unscattered_, 0, first_rough_);
+        lobe_top_ = smooth_pile(1.0, std::span(unscattered_).first(first_rough_));
         const AngularResponse response = system_.solve();
         const auto fitted = [&](Eigen::VectorXd AngularShares::*share) {
             return system_.top_depth() > 0.0
@@ -100,19 +101,17 @@ public:
     }
 
     double transmission(double c) const override { return shares(c).transmission; }
-    double internal_reflectance() const override { return internal_reflectance_; }
     double internal_reflectance(double sigma) const override {
         return oren_nayar_feedback(sigma, internal_reflectance_, [&](const SubstrateWeight& w) {
             return system_.solve(w).internal_reflectance;
         });
     }
-    double lowest_ior() const override { return stack_.back().ior; }
     double specular_albedo(double c) const override { return shares(c).specular; }
     double specular_delta(double c) const override {
         return smooth_response(lobe_top_, 1.0, std::clamp(c, 0.0, 1.0)).reflection_down;
     }
     bool has_top_lobe() const override { return top_rough_; }
-    const std::vector<Lobe>& deeper_lobes() const override { return lobes_; }
+    const std::vector<LobeShape>& deeper_lobes() const override { return lobes_; }
     double lobe_amplitude(int lobe, double c) const override {
         return std::max(tables_.at(static_cast<std::size_t>(lobe)).amplitude(c), 0.0);
     }
@@ -170,7 +169,7 @@ private:
         breaks_ = breaks_between_0_and_1(inner);
         const double integral = integrate_pieces(
             breaks_, 64, [this](double c) { return 2.0 * c * shares(c).transmission; });
-        const double n = stack_.back().ior;
+        const double n = lowest_ior();
         if (integral > 0.0)
             reciprocity_ = n * n * escape / integral;
     }
@@ -184,28 +183,34 @@ private:
     void make_lobes() {
         if (first_rough_ == stack_.size())
             return;
-        const auto cut_system = [&](std::size_t count) { // black beneath `count` layers
-            return AngularSystem(unscattered_, count);
+        std::vector<std::size_t> interfaces; // from the first rough one on
+        for (std::size_t e = first_rough_; e < stack_.size(); ++e)
+            if (std::holds_alternative<SurfaceValues>(stack_[e]))
+                interfaces.push_back(e);
+        const std::size_t count = interfaces.size();
+        const auto cut_system = [&](std::size_t k) { // black beneath so many of them
+            const std::size_t end = k < count ? interfaces[k] : stack_.size();
+            return AngularSystem(std::span(unscattered_).first(end));
         };
-        std::size_t k = first_rough_;
-        const AngularGrid grid = cut_system(k + 1).top_grid();
+        const AngularGrid grid = cut_system(1).top_grid();
         lobe_fit_ = fit_of(grid);
-        const auto cut_albedo = [&](std::size_t count) {
-            const bool whole = count == stack_.size() && unscattered_ == stack_;
+        const auto cut_albedo = [&](std::size_t k) {
+            const bool whole = k == count && unscattered_ == stack_;
             return lobe_fit_->coefficients(whole ? air_cells_
-                                                 : cut_system(count).solve().incoming.to_air);
+                                                 : cut_system(k).solve().incoming.to_air);
         };
         Eigen::VectorXd above = lobe_fit_->coefficients(Eigen::VectorXd::Zero(grid.cells()));
+        std::size_t k = 0;
         if (top_rough_) {
             set_top_lobe();
             ++k;
-            if (k < stack_.size())
+            if (k < count)
                 above = cut_albedo(k);
         }
-        while (k < stack_.size()) {
-            const std::size_t first = k++;
-            if (!is_rough_interface(stack_, first))
-                while (k < stack_.size() && !is_rough_interface(stack_, k))
+        while (k < count) {
+            const std::size_t first = interfaces[k++];
+            if (!is_rough(first))
+                while (k < count && !is_rough(interfaces[k]))
                     ++k;
             const Eigen::VectorXd cut = cut_albedo(k);
             add_lobe(first, cut - above);
@@ -222,10 +227,10 @@ private:
 
     /// Albedo of the top lobe towards a thinner medium, by quadrature over facets.
     Eigen::VectorXd inverted_first_lobe() const {
-        const LayerValues& layer = stack_.front();
+        const SurfaceValues& top = std::get<SurfaceValues>(stack_.front());
         const AngularGrid& grid = system_.top_grid();
         const RoughInterface interface {
-            1.0 / layer.ior, layer.distribution, layer.alpha, Scattering::Single
+            1.0 / top.ior_below, top.distribution, top.alpha, Scattering::Single
         };
         Eigen::VectorXd albedo = Eigen::VectorXd::Zero(grid.cells());
         const LatticeRule rule = lattice_rule(interface);
@@ -247,11 +252,23 @@ private:
         return albedo;
     }
 
-    void add_lobe(std::size_t index, const Eigen::VectorXd& coefficients) {
-        std::size_t shape = index; // a smooth interface takes the shape of the rough one above it
-        while (shape > 0 && stack_[shape].alpha == 0.0)
-            --shape;
-        const Lobe lobe{stack_[shape].distribution, effective_lobe_width(stack_, index)};
+    /// True for a rough interface; slabs do not make lobes.
+    bool is_rough(std::size_t element) const {
+        const auto* surface = std::get_if<SurfaceValues>(&stack_[element]);
+        return surface && surface->scatters();
+    }
+
+    /// A smooth interface takes the shape of the rough one above it.
+    Distribution distribution_at(std::size_t interface) const {
+        for (std::size_t e = interface; e > 0; --e)
+            if (const auto* surface = std::get_if<SurfaceValues>(&stack_[e]);
+                surface && surface->alpha != 0.0)
+                return surface->distribution;
+        return std::get<SurfaceValues>(stack_.front()).distribution;
+    }
+
+    void add_lobe(std::size_t interface, const Eigen::VectorXd& coefficients) {
+        const LobeShape lobe{distribution_at(interface), effective_lobe_width(stack_, interface)};
         lobes_.push_back(lobe);
         tables_.push_back(fit_lobe(lobe, [&](double c) {
             const double in = smooth_response(lobe_top_, 1.0, c).transmission;
@@ -260,25 +277,25 @@ private:
         }));
     }
 
-    StackValues stack_, unscattered_;
+    StackElements stack_, unscattered_;
     AngularSystem system_;
     std::shared_ptr<const CellFit> fit_, lobe_fit_;
     SmoothStack top_;             ///< to the first scatterer
     SmoothStack lobe_top_;        ///< to the first rough interface, for what is not scattered
-    std::size_t first_rough_ = 0; ///< index of an interface, or the number of layers
+    std::size_t first_rough_ = 0; ///< element of an interface, or the number of elements
     bool top_rough_ = false;
     double reciprocity_ = 1.0;
     double internal_reflectance_ = 0.0, residual_average_ = 0.0;
     ShareFit substrate_, air_, lost_;
     Eigen::VectorXd air_cells_, top_lobe_;
     std::vector<double> breaks_;
-    std::vector<Lobe> lobes_;
+    std::vector<LobeShape> lobes_;
     std::vector<LobeTables> tables_;
 };
 
 } // namespace
 
-std::shared_ptr<const AddingTransport> angular_transport(const StackValues& stack) {
+std::shared_ptr<const StackBsdf> angular_transport(std::span<const StackElement> stack) {
     return std::make_shared<AngularTransport>(stack);
 }
 

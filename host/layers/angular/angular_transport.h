@@ -1,13 +1,14 @@
 #pragma once
 
-#include "reradiant/adding.h"
+#include "host/layers/models/stack_bsdf.h"
 
 #include <memory>
+#include <span>
 
 namespace reradiant {
 
-/// AddingTransport of a stack in which something scatters: a rough interface or a slab. Light that
-/// slabs send back has the directions of the residual; its energy is exact.
-std::shared_ptr<const AddingTransport> angular_transport(const StackValues& stack);
+/// Adding in a stack in which something scatters: a rough interface or a slab. Light that slabs
+/// send back has the directions of the residual; its energy is exact.
+std::shared_ptr<const StackBsdf> angular_transport(std::span<const StackElement> stack);
 
 } // namespace reradiant

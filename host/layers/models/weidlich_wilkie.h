@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/core/portable.h"
-#include "reradiant/layer_stack.h"
+#include "reradiant/stack_elements.h"
 
 namespace reradiant {
 
@@ -27,26 +27,25 @@ namespace reradiant {
 /// published.
 struct WeidlichWilkie {
     /// Lobes of rough interfaces and flakes and the light that slabs scatter once, 1/sr, no cosine.
-    static double specular(const StackValues& stack, const kernels::Vec3& wi,
+    static double specular(const StackElements& stack, const kernels::Vec3& wi,
                            const kernels::Vec3& wo);
     /// Weight of the mirror delta from smooth interfaces and flakes.
-    static double specular_delta(const StackValues& stack, double cos_theta);
+    static double specular_delta(const StackElements& stack, double cos_theta);
     /// Product of T12 and exp(-tau / cos) on the way in, at the excitation wavelength.
-    static double way_in(const StackValues& stack, const kernels::Vec3& wi,
+    static double way_in(const StackElements& stack, const kernels::Vec3& wi,
                          const kernels::Vec3& wo);
     /// Product of t = (1 - G) + T21 G and exp(-tau / cos) on the way out, at the emission
     /// wavelength. f_diffuse = way_out(lo) M(lo, li) way_in(li) diffuse_shape(lo) / pi.
-    static double way_out(const StackValues& stack, const kernels::Vec3& wi,
+    static double way_out(const StackElements& stack, const kernels::Vec3& wi,
                           const kernels::Vec3& wo);
     /// pi f / rho of an Oren-Nayar substrate at the refracted directions; 1 for sigma 0.
-    static double diffuse_shape(const StackValues& stack, double sigma, const kernels::Vec3& wi,
+    static double diffuse_shape(const StackElements& stack, double sigma, const kernels::Vec3& wi,
                                 const kernels::Vec3& wo);
-    /// A conductor substrate seen through the stack, its lobe (1/sr, no cosine; 0 if smooth) and
-    /// the weight of its mirror delta (0 if rough).
-    static double conductor(const StackValues& stack, const ConductorValues& conductor,
-                            const kernels::Vec3& wi, const kernels::Vec3& wo);
-    static double conductor_delta(const StackValues& stack, const ConductorValues& conductor,
-                                  double cos_theta);
+    /// The conductor at the end of the stack seen through it, its lobe (1/sr, no cosine; 0 if
+    /// smooth) and the weight of its mirror delta (0 if rough); 0 where there is none.
+    static double conductor(const StackElements& stack, const kernels::Vec3& wi,
+                            const kernels::Vec3& wo);
+    static double conductor_delta(const StackElements& stack, double cos_theta);
 };
 
 } // namespace reradiant

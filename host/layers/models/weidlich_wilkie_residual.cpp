@@ -15,15 +15,18 @@ namespace {
 
 /// A `Way` follows light down from a direction in air, refracted at the macroscopic normal.
 struct Way {
-    double cosine, ior = 1.0, through = 1.0;
+    double cosine, through = 1.0;
 
-    void cross(const LayerValues& layer) {
-        through *= 1.0 - facet_reflectance(layer, ior, cosine);
-        cosine = kernels::fresnel_cos_transmitted(cosine, layer.ior / ior);
-        ior = layer.ior;
-        const double tau = layer.tau + layer.tau_scattering;
-        through = cosine > 0.0 ? through * std::exp(-tau / cosine) : 0.0;
-        through *= 1.0 - layer.flake_coverage;
+    void cross(const StackElement& element) {
+        if (const auto* slab = std::get_if<SlabValues>(&element)) {
+            through = cosine > 0.0 ? through * std::exp(-slab->depth() / cosine) : 0.0;
+        } else if (const auto* flakes = std::get_if<FlakesValues>(&element)) {
+            through *= 1.0 - flakes->coverage;
+        } else if (const auto* surface = std::get_if<SurfaceValues>(&element)) {
+            through *= 1.0 - facet_reflectance(*surface, cosine);
+            cosine =
+                kernels::fresnel_cos_transmitted(cosine, surface->ior_below / surface->ior_above);
+        }
     }
 };
 
@@ -32,15 +35,15 @@ double mean_of(const CosineTable& table) {
 }
 
 /// Returns V m e of a part whose share is `own` beneath all of `above`.
-CosineTable seen_from_air(const StackValues& above, const CosineTable& own) {
+CosineTable seen_from_air(std::span<const StackElement> above, const CosineTable& own) {
     const double mean = mean_of(own);
     if (!(mean > 0.0))
         return {};
     std::vector<double> seen;
     for (int node = 0; node < CosineTable::nodes; ++node) {
         Way way{CosineTable::node_cosine(node)};
-        for (const LayerValues& layer : above)
-            way.cross(layer);
+        for (const StackElement& element : above)
+            way.cross(element);
         seen.push_back(way.through > 0.0 ? way.through * own(way.cosine) : 0.0);
     }
     const double share = std::min(mean_of(CosineTable(seen)) / mean, 1.0);
@@ -58,24 +61,16 @@ void add(CosineTable& sum, const CosineTable& part, double factor) {
 
 } // namespace
 
-WeidlichWilkieResidual::WeidlichWilkieResidual(const StackValues& stack,
-                                               const std::optional<ConductorValues>& conductor) {
-    StackValues above;
-    double ior = 1.0;
-    for (const LayerValues& layer : stack) {
-        add(total_, seen_from_air(above, facet_interreflection(layer, ior)), 1.0);
-        ior = layer.ior;
-        above.push_back(layer);
-        if (layer.flake_coverage > 0.0) {
-            above.back().flake_coverage = 0.0; // a sheet does not stand before itself
-            add(total_, seen_from_air(above, facet_interreflection(layer.flakes, ior)),
-                layer.flake_coverage);
-            above.back() = layer;
-        }
-    }
-    if (conductor) {
-        conductor_ = seen_from_air(above, facet_interreflection(*conductor, ior));
-        add(total_, conductor_, 1.0);
+WeidlichWilkieResidual::WeidlichWilkieResidual(const StackElements& stack) {
+    for (std::size_t e = 0; e < stack.size(); ++e) {
+        const SurfaceValues* surface = surface_of(stack[e]);
+        if (!surface)
+            continue;
+        const CosineTable seen =
+            seen_from_air(std::span(stack).first(e), facet_interreflection(*surface));
+        add(total_, seen, coverage_of(stack[e]));
+        if (surface == conductor_of(stack))
+            conductor_ = seen;
     }
     average_ = mean_of(total_);
 }

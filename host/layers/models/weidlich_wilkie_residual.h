@@ -1,9 +1,7 @@
 #pragma once
 
 #include "host/layers/rough/specular_lobes.h"
-#include "reradiant/layer_stack.h"
-
-#include <optional>
+#include "reradiant/stack_elements.h"
 
 namespace reradiant {
 
@@ -21,8 +19,7 @@ namespace reradiant {
 /// all that its operator says. The residual is zero for `single` and for smooth stacks.
 class WeidlichWilkieResidual {
 public:
-    explicit WeidlichWilkieResidual(const StackValues& stack,
-                                    const std::optional<ConductorValues>& conductor = {});
+    explicit WeidlichWilkieResidual(const StackElements& stack);
 
     /// Albedo r of the residual for light from cos_theta, unit 1.
     double operator()(double cos_theta) const { return total_(cos_theta); }

@@ -1,6 +1,5 @@
 #include "host/layers/rough/facet_interreflection.h"
 
-#include "host/layers/angular/angular_system.h"
 #include "host/layers/rough/facet_orders.h"
 #include "host/layers/rough/facet_reflectance.h"
 #include "host/layers/rough/interface_operator.h"
@@ -41,12 +40,9 @@ std::vector<double> smith_interreflection(const Eigen::MatrixXd& orders, double 
     return {values.data(), values.data() + values.size()};
 }
 
-/// Returns the interreflection of opaque facets whose reflectance is that of `reflector`.
-template <typename Reflector>
-CosineTable opaque_interreflection(const Reflector& reflector, double ior_above) {
-    const AddingTransport::Lobe lobe{reflector.distribution, reflector.alpha};
-    const double mean =
-        cosine_mean([&](double c) { return facet_reflectance(reflector, ior_above, c); });
+CosineTable opaque_interreflection(const SurfaceValues& surface) {
+    const LobeShape lobe{surface.distribution, surface.alpha};
+    const double mean = cosine_mean([&](double c) { return facet_reflectance(surface, c); });
     return CosineTable(lobe.distribution == Distribution::Blinn
                            ? cavity_interreflection(lobe_albedo(lobe), mean)
                            : smith_interreflection(*facet_orders(lobe), mean));
@@ -108,25 +104,18 @@ CosineTable known_interreflection(const RoughInterface& interface, bool from_bel
 
 } // namespace
 
-CosineTable facet_interreflection(const LayerValues& layer, double ior_above) {
-    if (!(layer.alpha > 0.0) || layer.scattering == Scattering::Single)
+CosineTable facet_interreflection(const SurfaceValues& surface) {
+    if (!(surface.alpha > 0.0) || surface.scattering == Scattering::Single)
         return {};
-    if (layer.film.thickness_nm > 0.0)
-        return opaque_interreflection(layer, ior_above);
-    const StackValues pair{{ior_above}, layer};
-    if (!is_rough_interface(pair, 1))
+    if (surface.is_conductor || surface.has_film())
+        return opaque_interreflection(surface);
+    if (!surface.scatters())
         return {};
-    const double eta = layer.ior / ior_above;
+    const double eta = surface.ior_below / surface.ior_above;
     // operators are rounded to 1e-4 of the ratio: so are these
     const double ratio = std::round(std::max(eta, 1.0 / eta) * 1e4) * 1e-4;
-    return known_interreflection({ratio, layer.distribution, layer.alpha, layer.scattering},
+    return known_interreflection({ratio, surface.distribution, surface.alpha, surface.scattering},
                                  eta < 1.0);
-}
-
-CosineTable facet_interreflection(const ConductorValues& conductor, double ior_above) {
-    if (!(conductor.alpha > 0.0) || conductor.scattering == Scattering::Single)
-        return {};
-    return opaque_interreflection(conductor, ior_above);
 }
 
 } // namespace reradiant

@@ -40,7 +40,7 @@ void add_walk(const kernels::WalkSurface& facets, const Vec3& wi, WalkNumbers nu
     shares(walk.order - 1) += weight;
 }
 
-Eigen::MatrixXd walked_orders(const AddingTransport::Lobe& lobe) {
+Eigen::MatrixXd walked_orders(const LobeShape& lobe) {
     const WalkStream stream(walk_rule, 0);
     const kernels::WalkSurface facets{
         kernel_distribution(lobe.distribution), lobe.alpha, 1.0, 1, 1, nullptr};
@@ -61,7 +61,7 @@ Eigen::MatrixXd walked_orders(const AddingTransport::Lobe& lobe) {
 
 } // namespace
 
-std::shared_ptr<const Eigen::MatrixXd> facet_orders(const AddingTransport::Lobe& lobe) {
+std::shared_ptr<const Eigen::MatrixXd> facet_orders(const LobeShape& lobe) {
     static std::mutex mutex;
     static std::map<std::pair<Distribution, double>, std::shared_ptr<const Eigen::MatrixXd>> known;
     const std::scoped_lock lock(mutex);

@@ -14,6 +14,6 @@ namespace reradiant {
 /// lobe's own albedo (one meeting) a row adds up to 1. The shares come from walks on the Smith
 /// microsurface (Heitz et al. 2016) for ggx and beckmann, and have a relative error of about 1 %.
 /// Results are kept for later calls; thread-safe.
-std::shared_ptr<const Eigen::MatrixXd> facet_orders(const AddingTransport::Lobe& lobe);
+std::shared_ptr<const Eigen::MatrixXd> facet_orders(const LobeShape& lobe);
 
 } // namespace reradiant

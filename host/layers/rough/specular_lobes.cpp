@@ -49,7 +49,7 @@ double lobe_share(int distribution, double alpha, const Vec3& wi, const Vec3& wo
 }
 
 /// K(i, o): albedo of the lobe at node i that comes from amplitudes at node o.
-Eigen::MatrixXd spread_matrix(const AddingTransport::Lobe& lobe) {
+Eigen::MatrixXd spread_matrix(const LobeShape& lobe) {
     const int distribution = kernel_distribution(lobe.distribution);
     const WalkStream stream(lobe_rule, 0);
     Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(CosineTable::nodes, CosineTable::nodes);
@@ -74,7 +74,7 @@ Eigen::MatrixXd spread_matrix(const AddingTransport::Lobe& lobe) {
     return spread;
 }
 
-std::shared_ptr<const Eigen::MatrixXd> spread_of(const AddingTransport::Lobe& lobe) {
+std::shared_ptr<const Eigen::MatrixXd> spread_of(const LobeShape& lobe) {
     static std::mutex mutex;
     static std::map<std::pair<int, double>, std::shared_ptr<const Eigen::MatrixXd>> known;
     const std::pair<int, double> key{static_cast<int>(lobe.distribution), lobe.alpha};
@@ -91,12 +91,11 @@ std::vector<double> as_vector(const Eigen::VectorXd& v) {
 
 } // namespace
 
-CosineTable lobe_albedo(const AddingTransport::Lobe& lobe) {
+CosineTable lobe_albedo(const LobeShape& lobe) {
     return CosineTable(as_vector(spread_of(lobe)->rowwise().sum()));
 }
 
-LobeTables fit_lobe(const AddingTransport::Lobe& lobe,
-                    const std::function<double(double cosine)>& wanted) {
+LobeTables fit_lobe(const LobeShape& lobe, const std::function<double(double cosine)>& wanted) {
     const std::shared_ptr<const Eigen::MatrixXd> spread = spread_of(lobe);
     Eigen::VectorXd target(CosineTable::nodes);
     for (int node = 0; node < CosineTable::nodes; ++node) {
@@ -119,15 +118,14 @@ LobeTables fit_lobe(const AddingTransport::Lobe& lobe,
     return {CosineTable(as_vector(a)), CosineTable(as_vector(albedo))};
 }
 
-double effective_lobe_width(const StackValues& stack, std::size_t index) {
-    const double n_above = index == 0 ? 1.0 : stack[index - 1].ior;
-    double variance = n_above * stack[index].alpha * n_above * stack[index].alpha;
-    double ior = 1.0;
-    for (std::size_t j = 0; j < index; ++j) {
-        const double bend = (stack[j].ior / ior - 1.0) * stack[j].alpha;
-        variance += 0.5 * bend * bend;
-        ior = stack[j].ior;
-    }
+double effective_lobe_width(std::span<const StackElement> stack, std::size_t element) {
+    const SurfaceValues& own = std::get<SurfaceValues>(stack[element]);
+    double variance = own.ior_above * own.alpha * own.ior_above * own.alpha;
+    for (const StackElement& above : stack.first(element))
+        if (const auto* surface = std::get_if<SurfaceValues>(&above)) {
+            const double bend = (surface->ior_below / surface->ior_above - 1.0) * surface->alpha;
+            variance += 0.5 * bend * bend;
+        }
     const double steps = std::round(std::sqrt(variance) * 4096.0);
     return std::clamp(steps, 4.0, 4096.0) / 4096.0;
 }

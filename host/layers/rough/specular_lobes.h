@@ -1,6 +1,7 @@
 #pragma once
 
-#include "reradiant/adding.h"
+#include "reradiant/stack_elements.h"
+#include "reradiant/stack_model.h"
 
 #include <functional>
 #include <memory>
@@ -30,17 +31,16 @@ struct LobeTables {
 
 /// Albedo of the lobe D G2 / (4 ci co) itself, by cosine: what its facets send away at once when
 /// they reflect everything. Good to 1e-3.
-CosineTable lobe_albedo(const AddingTransport::Lobe& lobe);
+CosineTable lobe_albedo(const LobeShape& lobe);
 
 /// The amplitude whose lobe's albedo comes near `wanted` (unit 1, >= 0) without exceeding it at
 /// any node: fixed-point steps on a K a = wanted, K the lobe's own spread (without Fresnel).
-LobeTables fit_lobe(const AddingTransport::Lobe& lobe,
-                    const std::function<double(double cosine)>& wanted);
+LobeTables fit_lobe(const LobeShape& lobe, const std::function<double(double cosine)>& wanted);
 
-/// Width, in the air half vector, of the lobe that interface `index` of a stack reflects through
+/// Width, in the air half vector, of the lobe that the interface at `element` reflects through
 /// the rough interfaces above it: variances add up (Belcour 2018, section 4), a reflection k at
 /// depth counts n_above alpha_k, a passage through interface j (n_j / n_(j-1) - 1) alpha_j twice,
 /// there and back. Rounded to 1/4096, so that tables can be shared, between that and 1.
-double effective_lobe_width(const StackValues& stack, std::size_t index);
+double effective_lobe_width(std::span<const StackElement> stack, std::size_t element);
 
 } // namespace reradiant

@@ -22,25 +22,19 @@ FresnelPair fresnel_pair(double n_above, double n_below, double g2_above, double
     return {0.5 * (ts + tp), 0.5 * (rs * rs + rp * rp)};
 }
 
-SmoothStack smooth_media(const StackValues& stack, std::size_t first, std::size_t last,
-                         bool unscattered) {
-    SmoothStack media;
-    for (std::size_t k = first; k <= last; ++k) {
-        if (k == 0) {
-            media.ior.push_back(1.0);
-            media.tau.push_back(0.0);
-            continue;
-        }
-        const LayerValues& layer = stack[k - 1];
-        const bool clear = layer.tau_scattering > 0.0 && !unscattered;
-        media.ior.push_back(layer.ior);
-        media.tau.push_back(clear ? 0.0 : layer.tau + layer.tau_scattering);
-        if (k > first) {
-            media.film.push_back(layer.film);
-            media.wavelength_nm = std::max(media.wavelength_nm, layer.wavelength_nm);
+SmoothStack smooth_pile(double ior_above, std::span<const StackElement> run) {
+    SmoothStack pile{{ior_above}, {0.0}};
+    for (const StackElement& element : run) {
+        if (const auto* surface = std::get_if<SurfaceValues>(&element)) {
+            pile.ior.push_back(surface->ior_below);
+            pile.tau.push_back(0.0);
+            pile.film.push_back(surface->film);
+            pile.wavelength_nm = std::max(pile.wavelength_nm, surface->wavelength_nm);
+        } else if (const auto* slab = std::get_if<SlabValues>(&element)) {
+            pile.tau.back() = slab->depth();
         }
     }
-    return media;
+    return pile;
 }
 
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reradiant/layer_stack.h"
+#include "reradiant/stack_elements.h"
 
 #include <vector>
 
@@ -16,10 +16,10 @@ struct SmoothStack {
     double wavelength_nm = 0.0; ///< for the interference in films
 };
 
-/// Media `first` to `last` of a stack, medium 0 is the air and medium k lies under interface k - 1.
-/// Media that scatter count as clear, or with `unscattered` as absorbing what they scatter.
-SmoothStack smooth_media(const StackValues& stack, std::size_t first, std::size_t last,
-                         bool unscattered = false);
+/// Returns the pile that light meets in a run of elements beneath a medium of IOR `ior_above`:
+/// their media, each with its slab's depth. A scattering slab just above the run or just below it
+/// ends the pile in its medium and counts there as clear.
+SmoothStack smooth_pile(double ior_above, std::span<const StackElement> run);
 
 /// A `SmoothResponse` holds what a pile transmits and reflects of a flux along one refracted path.
 /// `transmission` holds in both directions (reciprocity). `loss_up` is 1 - (share of flux from

@@ -1,6 +1,6 @@
 #include "host/layers/smooth/smooth_transport.h"
 
-#include "host/layers/models/oren_nayar_substrate.h"
+#include "host/layers/models/adding.h"
 #include "host/layers/smooth/smooth_stack.h"
 #include "host/layers/stack/quadrature.h"
 
@@ -13,28 +13,26 @@ namespace {
 
 constexpr int integration_nodes = 64;
 
-class SmoothTransport final : public AddingTransport {
+class SmoothTransport final : public AddingModel {
 public:
-    explicit SmoothTransport(const StackValues& stack) {
-        stack_ = smooth_media(stack, 0, stack.size());
+    explicit SmoothTransport(std::span<const StackElement> stack)
+        : AddingModel(stack), stack_(smooth_pile(1.0, stack)) {
         internal_reflectance_ =
             1.0 - integrate_over_lowest([](double loss_up, double) { return loss_up; });
         internal_reflectance_ = std::clamp(internal_reflectance_, 0.0, 1.0);
     }
 
     double transmission(double c) const override { return response(c).transmission; }
-    double internal_reflectance() const override { return internal_reflectance_; }
     double internal_reflectance(double sigma) const override {
         return oren_nayar_feedback(sigma, internal_reflectance_, [&](const SubstrateWeight& w) {
             return integrate_over_lowest(
                 [&](double loss_up, double c) { return square(w(c)) * (1.0 - loss_up); });
         });
     }
-    double lowest_ior() const override { return stack_.ior.back(); }
     double specular_albedo(double c) const override { return response(c).reflection_down; }
     double specular_delta(double c) const override { return response(c).reflection_down; }
     bool has_top_lobe() const override { return false; }
-    const std::vector<Lobe>& deeper_lobes() const override { return no_lobes_; }
+    const std::vector<LobeShape>& deeper_lobes() const override { return no_lobes_; }
     double lobe_amplitude(int, double) const override { return 0.0; }
     double residual(double) const override { return 0.0; }
     double residual_average() const override { return 0.0; }
@@ -62,12 +60,12 @@ private:
 
     SmoothStack stack_;
     double internal_reflectance_ = 0.0;
-    std::vector<Lobe> no_lobes_;
+    std::vector<LobeShape> no_lobes_;
 };
 
 } // namespace
 
-std::shared_ptr<const AddingTransport> smooth_transport(const StackValues& stack) {
+std::shared_ptr<const StackBsdf> smooth_transport(std::span<const StackElement> stack) {
     return std::make_shared<SmoothTransport>(stack);
 }
 

@@ -1,13 +1,14 @@
 #pragma once
 
-#include "reradiant/adding.h"
+#include "host/layers/models/stack_bsdf.h"
 
 #include <memory>
+#include <span>
 
 namespace reradiant {
 
-/// AddingTransport of a stack without any rough interface (possibly without any interface), in
-/// closed form at every direction.
-std::shared_ptr<const AddingTransport> smooth_transport(const StackValues& stack);
+/// Adding in a stack in which nothing scatters (possibly without any interface), in closed form at
+/// every direction.
+std::shared_ptr<const StackBsdf> smooth_transport(std::span<const StackElement> stack);
 
 } // namespace reradiant

@@ -55,47 +55,6 @@ bool LayerStack::is_constant() const {
     });
 }
 
-namespace {
-
-FilmValues film_at(const std::optional<ThinFilm>& film, double wavelength_nm) {
-    return film ? FilmValues{film->thickness_nm, film->ior(wavelength_nm)} : FilmValues{};
-}
-
-} // namespace
-
-ConductorValues conductor_at(const Conductor& conductor, double wavelength_nm) {
-    return {conductor.ior(wavelength_nm),
-            conductor.kappa(wavelength_nm),
-            conductor.distribution,
-            conductor.alpha,
-            conductor.scattering,
-            film_at(conductor.film, wavelength_nm),
-            conductor.film ? wavelength_nm : 0.0};
-}
-
-StackValues stack_at(const LayerStack& stack, double wavelength_nm) {
-    StackValues values;
-    values.reserve(stack.layers.size());
-    for (const Layer& layer : stack.layers) {
-        LayerValues& at = values.emplace_back();
-        at.ior = layer.ior(wavelength_nm);
-        at.distribution = layer.distribution;
-        at.alpha = layer.alpha;
-        at.scattering = layer.scattering;
-        at.tau = layer.absorption(wavelength_nm) * layer.thickness;
-        at.tau_scattering = layer.scattering_coefficient(wavelength_nm) * layer.thickness;
-        at.anisotropy = layer.anisotropy;
-        at.film = film_at(layer.film, wavelength_nm);
-        if (layer.flakes) {
-            at.flake_coverage = layer.flakes->coverage;
-            at.flakes = conductor_at(layer.flakes->reflector, wavelength_nm);
-        }
-        if (layer.film || (layer.flakes && layer.flakes->reflector.film))
-            at.wavelength_nm = wavelength_nm;
-    }
-    return values;
-}
-
 double alpha_from_roughness_deg(Distribution distribution, double roughness_deg) {
     if (roughness_deg == 0.0)
         return 0.0;

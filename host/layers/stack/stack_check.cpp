@@ -17,11 +17,6 @@ void check(bool good, const std::string& whose, const char* what, double value,
         throw_input_error({}, fmt::format("{} has {} {}", whose, what, value), remedy);
 }
 
-void check_alpha(double alpha, const std::string& whose) {
-    check(alpha >= 0.0 && alpha <= 1.0, whose, "roughness alpha", alpha,
-          "it must be between 0 and 1");
-}
-
 void check_film(const FilmValues& film, double wavelength_nm, const std::string& whose) {
     check(film.thickness_nm >= 0.0 && std::isfinite(film.thickness_nm), whose, "film thickness",
           film.thickness_nm, "it must not be negative");
@@ -31,41 +26,46 @@ void check_film(const FilmValues& film, double wavelength_nm, const std::string&
           wavelength_nm, "interference needs one in nm");
 }
 
-void check_reflector(const ConductorValues& conductor, const std::string& whose) {
-    check(conductor.ior > 0.0 && std::isfinite(conductor.ior), whose, "index of refraction",
-          conductor.ior, "it must be a positive number");
-    check(conductor.kappa >= 0.0 && std::isfinite(conductor.kappa), whose, "kappa", conductor.kappa,
+void check_surface(const SurfaceValues& surface, const std::string& whose) {
+    check(surface.ior_below > 0.0 && std::isfinite(surface.ior_below), whose, "index of refraction",
+          surface.ior_below, "it must be a positive number");
+    check(surface.kappa >= 0.0 && std::isfinite(surface.kappa), whose, "kappa", surface.kappa,
           "it must not be negative");
-    check_alpha(conductor.alpha, whose);
-    check_film(conductor.film, conductor.wavelength_nm, whose);
+    check(surface.alpha >= 0.0 && surface.alpha <= 1.0, whose, "roughness alpha", surface.alpha,
+          "it must be between 0 and 1");
+    check_film(surface.film, surface.wavelength_nm, whose);
 }
 
-void check_layer(const LayerValues& layer, const std::string& whose) {
-    check(layer.ior > 0.0 && std::isfinite(layer.ior), whose, "index of refraction", layer.ior,
-          "it must be a positive number");
-    check_alpha(layer.alpha, whose);
-    check(layer.tau >= 0.0, whose, "optical depth", layer.tau,
+void check_slab(const SlabValues& slab, const std::string& whose) {
+    check(slab.tau >= 0.0, whose, "optical depth", slab.tau,
           "absorption and thickness must not be negative");
-    check(layer.tau_scattering >= 0.0, whose, "scattering depth", layer.tau_scattering,
+    check(slab.tau_scattering >= 0.0, whose, "scattering depth", slab.tau_scattering,
           "scattering coefficient and thickness must not be negative");
-    check(std::fabs(layer.anisotropy) < 1.0, whose, "anisotropy", layer.anisotropy,
+    check(std::fabs(slab.anisotropy) < 1.0, whose, "anisotropy", slab.anisotropy,
           "it must lie between -1 and 1");
-    check_film(layer.film, layer.wavelength_nm, whose);
-    check(layer.flake_coverage >= 0.0 && layer.flake_coverage <= 1.0, whose, "flake coverage",
-          layer.flake_coverage, "it must be between 0 and 1");
-    if (layer.flake_coverage > 0.0)
-        check_reflector(layer.flakes, "the flakes' conductor of " + whose);
+}
+
+void check_flakes(const FlakesValues& flakes, const std::string& whose) {
+    check(flakes.coverage >= 0.0 && flakes.coverage <= 1.0, whose, "flake coverage",
+          flakes.coverage, "it must be between 0 and 1");
+    check_surface(flakes.reflector, "the flakes' conductor of " + whose);
 }
 
 } // namespace
 
-void check_stack(const StackValues& stack) {
-    for (std::size_t k = 0; k < stack.size(); ++k)
-        check_layer(stack[k], fmt::format("layer {}", k + 1));
-}
-
-void check_conductor(const ConductorValues& conductor) {
-    check_reflector(conductor, "the conductor");
+void check_stack(std::span<const StackElement> stack) {
+    int layer = 0;
+    for (const StackElement& element : stack) {
+        const auto* surface = std::get_if<SurfaceValues>(&element);
+        layer += surface && !surface->is_conductor ? 1 : 0;
+        const std::string whose = fmt::format("layer {}", layer);
+        if (surface)
+            check_surface(*surface, surface->is_conductor ? "the conductor" : whose);
+        else if (const auto* slab = std::get_if<SlabValues>(&element))
+            check_slab(*slab, whose);
+        else if (const auto* flakes = std::get_if<FlakesValues>(&element))
+            check_flakes(*flakes, whose);
+    }
 }
 
 } // namespace reradiant

@@ -1,14 +1,11 @@
 #pragma once
 
-#include "reradiant/layer_stack.h"
+#include "reradiant/stack_elements.h"
 
 namespace reradiant {
 
-/// Throws an input Error that names the layer for numbers out of physical range: every model calls
-/// this first.
-void check_stack(const StackValues& stack);
-
-/// Throws an input Error for a conductor substrate whose numbers are out of physical range.
-void check_conductor(const ConductorValues& conductor);
+/// Throws an input Error that names the layer, or the conductor at the end, for numbers out of
+/// physical range: every model calls this first.
+void check_stack(std::span<const StackElement> stack);
 
 } // namespace reradiant

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reradiant/layer_stack.h"
+#include "reradiant/stack_elements.h"
 
 #include <Eigen/Core>
 
@@ -14,7 +14,13 @@ struct SubstrateValues {
     Eigen::MatrixXd matrix;
     double sigma = 0.0; ///< Oren-Nayar, radians; 0: Lambertian
     /// A conductor at every band instead; empty: diffuse.
-    std::vector<ConductorValues> conductor = {};
+    std::vector<SurfaceValues> conductor = {};
+
+    /// Returns what a stack ends in at a band.
+    StackElement at_band(std::size_t band) const {
+        return conductor.empty() ? StackElement(DiffuseValues{.sigma = sigma})
+                                 : StackElement(conductor[band]);
+    }
 };
 
 } // namespace reradiant

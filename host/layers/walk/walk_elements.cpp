@@ -11,6 +11,8 @@ namespace reradiant {
 
 namespace {
 
+using Kind = WalkElement::Kind;
+
 /// The matrix as light feels it, or with nothing in it for a conductor.
 Eigen::MatrixXd checked_matrix(const SubstrateValues& substrate, std::size_t bands) {
     const auto n = static_cast<Eigen::Index>(bands);
@@ -29,56 +31,43 @@ Eigen::MatrixXd checked_matrix(const SubstrateValues& substrate, std::size_t ban
     return substrate.matrix;
 }
 
-WalkElement surface_element(WalkElement::Kind kind, const WalkSurface& surface) {
-    WalkElement element;
-    element.kind = kind;
-    element.surface = surface;
-    element.ior = surface.ior_above;
-    return element;
-}
-
-void add_layer(WalkElements& elements, const StackValues& stack, std::size_t k) {
-    const LayerValues& layer = stack[k];
-    elements.push_back(surface_element(WalkElement::Kind::Surface, interface_surface(stack, k)));
-    WalkElement& slab = elements.emplace_back();
-    slab.kind = WalkElement::Kind::Slab;
-    slab.ior = layer.ior;
-    slab.tau = Eigen::ArrayXd::Constant(1, layer.tau);
-    slab.tau_scattering = layer.tau_scattering;
-    slab.anisotropy = layer.anisotropy;
-    if (layer.flake_coverage > 0.0) {
-        elements.push_back(
-            surface_element(WalkElement::Kind::Flakes,
-                            conductor_surface(layer.flakes, layer.ior, layer.wavelength_nm)));
-        elements.back().coverage = layer.flake_coverage;
+/// What the walk needs of an element.
+struct WalkElementOf {
+    WalkElement operator()(const SurfaceValues& surface) const {
+        const Kind kind = surface.is_conductor ? Kind::Conductor : Kind::Surface;
+        return {.kind = kind, .surface = walk_surface(surface), .ior = surface.ior_above};
     }
-}
+    WalkElement operator()(const SlabValues& slab) const {
+        return {.kind = Kind::Slab,
+                .ior = slab.ior,
+                .tau = Eigen::ArrayXd::Constant(1, slab.tau),
+                .tau_scattering = slab.tau_scattering,
+                .anisotropy = slab.anisotropy};
+    }
+    WalkElement operator()(const FlakesValues& flakes) const {
+        return {.kind = Kind::Flakes,
+                .surface = walk_surface(flakes.reflector),
+                .ior = flakes.reflector.ior_above,
+                .coverage = flakes.coverage};
+    }
+    WalkElement operator()(const DiffuseValues& substrate) const {
+        return {.kind = Kind::Diffuse, .ior = substrate.ior_above, .sigma = substrate.sigma};
+    }
+};
 
-WalkElements elements_at(const StackValues& stack, const SubstrateValues& substrate,
-                         std::size_t band, double wavelength_nm) {
+WalkElements walk_elements(const StackElements& stack) {
     check_stack(stack);
     WalkElements elements;
-    for (std::size_t k = 0; k < stack.size(); ++k)
-        add_layer(elements, stack, k);
-    const double ior = stack.empty() ? 1.0 : stack.back().ior;
-    if (!substrate.conductor.empty()) {
-        check_conductor(substrate.conductor[band]);
-        elements.push_back(
-            surface_element(WalkElement::Kind::Conductor,
-                            conductor_surface(substrate.conductor[band], ior, wavelength_nm)));
-        return elements;
-    }
-    WalkElement& diffuse = elements.emplace_back();
-    diffuse.kind = WalkElement::Kind::Diffuse;
-    diffuse.ior = ior;
-    diffuse.sigma = substrate.sigma;
+    for (const StackElement& element : stack)
+        elements.push_back(std::visit(WalkElementOf{}, element));
     return elements;
 }
 
-/// Returns the values without those in which bands that share a walk may differ.
-StackValues ways_of(StackValues stack) {
-    for (LayerValues& layer : stack)
-        layer.tau = 0.0;
+/// Returns the stack without the numbers in which bands that share a walk may differ.
+StackElements ways_of(StackElements stack) {
+    for (StackElement& element : stack)
+        if (auto* slab = std::get_if<SlabValues>(&element))
+            slab->tau = 0.0;
     return stack;
 }
 
@@ -88,15 +77,15 @@ WalkMaterial::WalkMaterial(const LayerStack& stack, const SubstrateValues& subst
                            const std::vector<double>& wavelengths_nm)
     : matrix_(checked_matrix(substrate, wavelengths_nm.size())) {
     fluorescent_ = !matrix_.isDiagonal(0.0);
-    std::vector<StackValues> values;
+    std::vector<StackElements> ways;
     bool same = true;
     for (std::size_t band = 0; band < wavelengths_nm.size(); ++band) {
-        values.push_back(stack_at(stack, wavelengths_nm[band]));
-        by_band_.push_back(elements_at(values[band], substrate, band, wavelengths_nm[band]));
-        same =
-            same && ways_of(values[band]) == ways_of(values[0]) &&
-            (substrate.conductor.empty() || (substrate.conductor[band] == substrate.conductor[0] &&
-                                             substrate.conductor[0].film.thickness_nm == 0.0));
+        const StackElements values =
+            stack_over(stack_at(stack, wavelengths_nm[band]), substrate.at_band(band));
+        by_band_.push_back(walk_elements(values));
+        const SurfaceValues* conductor = conductor_of(values);
+        ways.push_back(ways_of(values));
+        same = same && ways.back() == ways.front() && !(conductor && conductor->has_film());
     }
     if (!same)
         return;

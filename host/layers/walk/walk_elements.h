@@ -2,7 +2,7 @@
 
 #include "host/layers/stack/substrate_values.h"
 #include "host/layers/walk/walk_surface.h"
-#include "reradiant/layer_stack.h"
+#include "reradiant/stack_elements.h"
 
 #include <Eigen/Core>
 
@@ -10,13 +10,14 @@
 
 namespace reradiant {
 
-/// A `WalkElement` is one thing that light meets on its way down from the air to the substrate.
+/// A `WalkElement` is a StackElement made ready for the walk: with what its surface gives back of
+/// lost light, and with the absorption of all bands that one walk carries.
 struct WalkElement {
     enum class Kind { Surface, Slab, Flakes, Conductor, Diffuse };
     Kind kind = Kind::Surface;
-    WalkSurface surface; ///< interface, flakes, conductor
-    double ior = 1.0;    ///< IOR of the slab, or of the medium above any other element
-    Eigen::ArrayXd tau;  ///< slab: depth of absorption at every band that is carried
+    WalkSurface surface{}; ///< interface, flakes, conductor
+    double ior = 1.0;      ///< IOR of the slab, or of the medium above any other element
+    Eigen::ArrayXd tau{};  ///< slab: depth of absorption at every band that is carried
     double tau_scattering = 0.0, anisotropy = 0.0;
     double coverage = 0.0; ///< flakes
     double sigma = 0.0;    ///< diffuse

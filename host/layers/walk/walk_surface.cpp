@@ -1,6 +1,5 @@
 #include "host/layers/walk/walk_surface.h"
 
-#include "host/layers/angular/angular_system.h"
 #include "host/layers/stack/quadrature.h"
 #include "kernels/scatter/fresnel.h"
 #include "kernels/scatter/thin_film.h"
@@ -237,40 +236,19 @@ kernels::WalkSurface WalkSurface::facets(bool from_below) const {
             lost ? lost->table().data() : nullptr};
 }
 
-WalkSurface interface_surface(const StackValues& stack, std::size_t index) {
-    const LayerValues& layer = stack[index];
-    WalkSurface surface;
-    surface.ior_above = index == 0 ? 1.0 : stack[index - 1].ior;
-    surface.ior_below = layer.ior;
-    surface.distribution = layer.distribution;
-    surface.alpha = is_rough_interface(stack, index) ? layer.alpha : 0.0;
-    surface.scattering = layer.scattering;
-    surface.film = layer.film;
-    surface.wavelength_nm = layer.wavelength_nm;
-    if (surface.is_rough() && layer.distribution == Distribution::Blinn &&
-        layer.scattering == Scattering::Multiple) {
-        const double ratio = surface.ior_below / surface.ior_above;
-        surface.lost = LostFlux::of(std::max(ratio, 1.0 / ratio), layer.alpha);
-    }
-    return surface;
-}
-
-WalkSurface conductor_surface(const ConductorValues& conductor, double ior_above,
-                              double wavelength_nm) {
-    WalkSurface surface;
-    surface.ior_above = ior_above;
-    surface.ior_below = conductor.ior;
-    surface.kappa = conductor.kappa;
-    surface.is_conductor = true;
-    surface.distribution = conductor.distribution;
-    surface.alpha = conductor.alpha;
-    surface.scattering = conductor.scattering;
-    surface.film = conductor.film;
-    surface.wavelength_nm = wavelength_nm;
-    if (surface.is_rough() && conductor.distribution == Distribution::Blinn &&
-        conductor.scattering == Scattering::Multiple) {
-        surface.lost = LostFlux::of(0.0, conductor.alpha);
+WalkSurface walk_surface(const SurfaceValues& values) {
+    WalkSurface surface{values};
+    if (!values.scatters())
+        surface.alpha = 0.0;
+    if (!surface.is_rough() || surface.distribution != Distribution::Blinn ||
+        surface.scattering != Scattering::Multiple)
+        return surface;
+    if (surface.is_conductor) {
+        surface.lost = LostFlux::of(0.0, surface.alpha);
         surface.lost_reflectance = bounced_reflectance(surface);
+    } else {
+        const double ratio = surface.ior_below / surface.ior_above;
+        surface.lost = LostFlux::of(std::max(ratio, 1.0 / ratio), surface.alpha);
     }
     return surface;
 }

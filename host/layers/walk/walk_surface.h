@@ -3,26 +3,17 @@
 #include "host/layers/rough/lost_flux.h"
 #include "host/layers/walk/walk_random.h"
 #include "kernels/walk/walk_facets.h"
-#include "reradiant/layer_stack.h"
+#include "reradiant/stack_elements.h"
 
 #include <memory>
 #include <span>
 
 namespace reradiant {
 
-/// An interface between two media or a conductor in one medium, as the walk meets it at one
-/// wavelength. Directions are given in the frame of the side that they are on: z > 0 points away
-/// from the surface, and the frame below is the one above with all axes turned over.
-struct WalkSurface {
-    double ior_above = 1.0; ///< also of the medium beneath a sheet of flakes
-    double ior_below = 1.0; ///< for a conductor its own IOR
-    double kappa = 0.0;
-    bool is_conductor = false;
-    Distribution distribution = Distribution::Ggx;
-    double alpha = 0.0; ///< 0: smooth, a delta
-    Scattering scattering = Scattering::Multiple;
-    FilmValues film = {};
-    double wavelength_nm = 0.0;                     ///< for the interference in films
+/// A surface as the walk meets it at one wavelength; one that does not scatter has alpha 0.
+/// Directions are given in the frame of the side that they are on: z > 0 points away from the
+/// surface, and the frame below is the one above with all axes turned over.
+struct WalkSurface : SurfaceValues {
     std::shared_ptr<const LostFlux> lost = nullptr; ///< set for blinn with `multiple` only
     double lost_reflectance = 1.0; ///< share of the lost flux that a conductor gives back
 
@@ -36,9 +27,7 @@ struct WalkSurface {
     kernels::WalkSurface facets(bool from_below) const;
 };
 
-WalkSurface interface_surface(const StackValues& stack, std::size_t index);
-WalkSurface conductor_surface(const ConductorValues& conductor, double ior_above,
-                              double wavelength_nm);
+WalkSurface walk_surface(const SurfaceValues& surface);
 
 /// A `SurfaceTarget` is a direction in which the scattered light is asked for.
 struct SurfaceTarget {

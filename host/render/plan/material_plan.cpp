@@ -1,10 +1,10 @@
 #include "host/render/plan/material_plan.h"
 
-#include "host/layers/angular/angular_system.h"
+#include "host/layers/models/weidlich_wilkie_bsdf.h"
 #include "host/layers/walk/walk_surface.h"
 #include "host/render/tables/stack_optics.h"
-#include "host/render/tables/stack_parts.h"
 #include "host/render/tables/substrate_operator.h"
+#include "host/scene/model/closed_model.h"
 #include "kernels/core/shared.h"
 #include "reradiant/error.h"
 
@@ -22,11 +22,13 @@ bool any_positive(const std::vector<double>& values) {
 }
 
 /// Fresnel's bare dielectric is the only reflectance that kernels know by themselves.
-bool is_tabulated(const Material& material, const StackPart& part) {
-    if (part.kind != StackPart::Kind::Interface)
-        return true;
-    const std::optional<ThinFilm>& film = material.stack.layers[part.layer].film;
-    return film && film->thickness_nm > 0.0;
+bool is_tabulated(const SurfaceValues& surface) {
+    return surface.is_conductor || surface.has_film();
+}
+
+/// An interface between equal media without a film is not seen.
+bool reflects(const SurfaceValues& surface) {
+    return is_tabulated(surface) || surface.ior_below != surface.ior_above;
 }
 
 /// Fills the plan of one material.
@@ -34,7 +36,8 @@ class MaterialPlanner {
 public:
     MaterialPlanner(const Material& material, const ModelChoice& choice,
                     const WavelengthPlan& wavelengths)
-        : material_(material), layers_(material.stack.layers), wavelengths_(wavelengths),
+        : material_(material), stack_(material_at(material, reference_nm)),
+          parts_(reflecting_elements(stack_)), wavelengths_(wavelengths),
           lanes_(static_cast<std::uint64_t>(wavelengths.padded_lanes())),
           row_(static_cast<std::uint64_t>(wavelengths.phases) * lanes_) {
         plan_.choice = choice;
@@ -60,11 +63,10 @@ private:
     std::uint64_t spectral_nodes() const { return row_ * TABLE_NODES; }
 
     void plan_closed_model() {
-        const std::vector<StackPart> parts = stack_parts(material_);
-        plan_parts(parts);
+        plan_parts();
         plan_lobes();
         if (plan_.choice.model == Model::WeidlichWilkie)
-            find_specular_of_parts(parts);
+            find_specular_of_parts();
         else
             find_specular_of_adding();
         plan_.features.smooth = plan_.has_delta;
@@ -76,86 +78,77 @@ private:
             tables * (plan_.features.spectral_stack ? spectral_nodes() : TABLE_NODES);
     }
 
+    /// The surface of a part at the reference wavelength.
+    const SurfaceValues& part(std::size_t p) const { return *surface_of(stack_[parts_[p]]); }
+
     /// Returns true where `holds` does for the stack at some wavelength; of a stack it may ask for
-    /// IORs, widths and films.
-    bool at_any_wavelength(const std::function<bool(const StackValues&)>& holds) const {
+    /// the IORs, widths and films of its interfaces.
+    bool at_any_wavelength(const std::function<bool(const StackElements&)>& holds) const {
         if (!material_.stack.is_dispersive())
-            return holds(stack_at(material_.stack, reference_nm));
+            return holds(stack_);
         for (int phase = 0; phase < wavelengths_.phases; ++phase)
             for (int lane = 0; lane < static_cast<int>(wavelengths_.lanes.size()); ++lane)
-                if (holds(stack_at(material_.stack, wavelengths_.wavelength_nm(lane, phase))))
+                if (holds(material_at(material_, wavelengths_.wavelength_nm(lane, phase))))
                     return true;
         return false;
-    }
-
-    static bool changes_ior(const StackValues& stack, std::size_t k) {
-        return stack[k].ior != (k > 0 ? stack[k - 1].ior : 1.0) || stack[k].film.thickness_nm > 0.0;
     }
 
     /// Under adding smooth interfaces make a mirror down to the first rough one, and the residual
     /// takes what rough ones and slabs scatter.
     void find_specular_of_adding() {
-        const auto first_rough = [](const StackValues& stack) {
-            std::size_t k = 0;
-            while (k < stack.size() && !is_rough_interface(stack, k))
-                ++k;
-            return k;
-        };
-        plan_.has_delta = at_any_wavelength([&](const StackValues& stack) {
-            for (std::size_t k = 0; k < first_rough(stack); ++k)
-                if (changes_ior(stack, k))
+        plan_.has_delta = at_any_wavelength([](const StackElements& stack) {
+            for (const StackElement& element : above_substrate(stack)) {
+                const auto* interface = std::get_if<SurfaceValues>(&element);
+                if (interface && interface->scatters())
+                    return false;
+                if (interface && reflects(*interface))
                     return true;
+            }
             return false;
         });
         plan_.has_residual =
-            material_.stack.scatters() || at_any_wavelength([&](const StackValues& stack) {
-                return first_rough(stack) < stack.size();
+            material_.stack.scatters() || at_any_wavelength([](const StackElements& stack) {
+                const auto above = above_substrate(stack);
+                return std::any_of(above.begin(), above.end(), [](const StackElement& element) {
+                    const auto* interface = std::get_if<SurfaceValues>(&element);
+                    return interface && interface->scatters();
+                });
             });
     }
 
     /// Under model A every smooth part is a mirror, and every rough one whose scattering is
     /// `multiple` adds to the residual.
-    void find_specular_of_parts(const std::vector<StackPart>& parts) {
-        for (const StackPart& part : parts) {
-            const bool reflects = part.kind != StackPart::Kind::Interface ||
-                                  at_any_wavelength([&](const StackValues& stack) {
-                                      return changes_ior(stack, part.layer);
-                                  });
-            plan_.has_delta |= reflects && part.alpha == 0.0;
-            plan_.has_residual |= reflects && part.alpha > 0.0 && is_multiple(part);
+    void find_specular_of_parts() {
+        for (std::size_t p = 0; p < parts_.size(); ++p) {
+            const SurfaceValues& surface = part(p);
+            if (!at_any_wavelength([&](const StackElements& stack) {
+                    return reflects(*surface_of(stack[parts_[p]]));
+                }))
+                continue;
+            plan_.has_delta |= surface.alpha == 0.0;
+            plan_.has_residual |= surface.alpha > 0.0 && surface.scattering == Scattering::Multiple;
         }
-    }
-
-    bool is_multiple(const StackPart& part) const {
-        switch (part.kind) {
-        case StackPart::Kind::Interface:
-            return layers_[part.layer].scattering == Scattering::Multiple;
-        case StackPart::Kind::Flakes:
-            return layers_[part.layer].flakes->reflector.scattering == Scattering::Multiple;
-        case StackPart::Kind::Conductor:
-            break;
-        }
-        return material_.substrate.conductor.scattering == Scattering::Multiple;
     }
 
     /// Finds what the kernels evaluate for themselves, and whether lane by lane.
-    void plan_parts(const std::vector<StackPart>& parts) {
-        const bool nested =
-            plan_.choice.model == Model::WeidlichWilkie && !is_all_smooth(material_);
-        const bool dispersive = material_.stack.is_dispersive();
+    void plan_parts() {
+        const bool nested = plan_.choice.model == Model::WeidlichWilkie && !is_all_smooth(stack_);
+        const LayerStack& spectra = material_.stack;
+        const bool dispersive = spectra.is_dispersive();
         plan_.model_a = !nested ? 0u : dispersive ? MODEL_A_PER_LANE : MODEL_A;
         plan_.features.weidlich_wilkie = nested;
-        plan_.features.rough = !parts.empty() && parts.front().alpha > 0.0;
+        plan_.features.rough = !parts_.empty() && part(0).alpha > 0.0;
         if (nested && dispersive)
-            plan_.ior_ratios = parts.size();
-        else if (plan_.features.rough && !layers_.empty() && !layers_.front().ior.is_constant())
+            plan_.ior_ratios = parts_.size();
+        else if (plan_.features.rough && !spectra.layers.empty() &&
+                 !spectra.layers.front().ior.is_constant())
             plan_.ior_ratios = 1;
-        for (std::size_t p = 0; nested && p < parts.size(); ++p)
-            if (is_tabulated(material_, parts[p]))
+        for (std::size_t p = 0; nested && p < parts_.size(); ++p)
+            if (is_tabulated(part(p)))
                 plan_.tabulated.push_back(p);
         plan_.features.dispersion = plan_.ior_ratios > 0;
         plan_.features.tabulated_reflectance = !plan_.tabulated.empty();
-        plan_.counts.layers = parts.size();
+        plan_.counts.layers = parts_.size();
         plan_.counts.floats += plan_.ior_ratios * row_ + plan_.tabulated.size() * spectral_nodes();
     }
 
@@ -163,8 +156,9 @@ private:
         plan_.counts.lobes = static_cast<std::uint64_t>(plan_.features.lobes);
         plan_.features.deeper_lobes = plan_.counts.lobes > 0;
         if (plan_.choice.model == Model::WeidlichWilkie)
-            for (const DeeperLobe& lobe : weidlich_wilkie_lobes(material_))
-                plan_.counts.floats += lobe.is_slab ? 2 * row_ : 0; // optical depth and albedo
+            for (const DeeperLobe& lobe : weidlich_wilkie_lobes(stack_))
+                if (std::holds_alternative<SlabValues>(stack_[lobe.element]))
+                    plan_.counts.floats += 2 * row_; // optical depth and albedo
     }
 
     void plan_walk() {
@@ -172,48 +166,49 @@ private:
             throw_input_error(material_.position,
                               fmt::format("material '{}': {}", material_.name, *refusal),
                               "use weidlich-wilkie or adding, or measure the material by walk");
-        plan_.counts.walk_parts = layers_.size() + 1;
-        for (std::size_t k = 0; k < layers_.size(); ++k) {
-            plan_slab(layers_[k]);
-            count_cavities(interface_surface(stack_at(material_.stack, reference_nm), k));
-            if (layers_[k].flakes && layers_[k].flakes->coverage > 0.0) {
-                ++plan_.counts.walk_parts;
-                plan_walked_conductor(layers_[k].flakes->reflector, layers_[k].ior(reference_nm));
+        plan_slabs();
+        plan_.counts.walk_parts = plan_.slabs.size() + 1;
+        for (const std::size_t e : parts_) {
+            const SurfaceValues& surface = *surface_of(stack_[e]);
+            plan_.counts.walk_parts += std::holds_alternative<FlakesValues>(stack_[e]) ? 1 : 0;
+            plan_walked_surface(surface);
+        }
+    }
+
+    void plan_slabs() {
+        for (const StackElement& element : stack_)
+            if (std::holds_alternative<SlabValues>(element))
+                plan_.slabs.emplace_back();
+        for (int phase = 0; phase < wavelengths_.phases; ++phase)
+            for (int lane = 0; lane < static_cast<int>(wavelengths_.lanes.size()); ++lane)
+                append_depths(material_at(material_, wavelengths_.wavelength_nm(lane, phase)));
+        for (const SlabDepths& slab : plan_.slabs) {
+            plan_.features.scattering_slabs |= slab.scatters();
+            plan_.counts.floats += (slab.scatters() ? 2 : slab.absorbs() ? 1 : 0) * row_;
+        }
+    }
+
+    void append_depths(const StackElements& stack) {
+        auto depths = plan_.slabs.begin();
+        for (const StackElement& element : stack) {
+            if (const auto* slab = std::get_if<SlabValues>(&element)) {
+                depths->absorption.push_back(slab->tau);
+                depths->scattering.push_back(slab->tau_scattering);
+                ++depths;
             }
         }
-        if (is_conductor())
-            plan_walked_conductor(material_.substrate.conductor,
-                                  layers_.empty() ? 1.0 : layers_.back().ior(reference_nm));
     }
 
-    void plan_slab(const Layer& layer) {
-        SlabDepths slab;
-        for (int phase = 0; phase < wavelengths_.phases; ++phase)
-            for (int lane = 0; lane < static_cast<int>(wavelengths_.lanes.size()); ++lane) {
-                const double nm = wavelengths_.wavelength_nm(lane, phase);
-                slab.absorption.push_back(layer.thickness * layer.absorption(nm));
-                slab.scattering.push_back(layer.thickness * layer.scattering_coefficient(nm));
-            }
-        const bool scatters = slab.scatters();
-        plan_.features.scattering_slabs |= scatters;
-        plan_.counts.floats += (scatters ? 2 : slab.absorbs() ? 1 : 0) * row_;
-        plan_.slabs.push_back(std::move(slab));
-    }
-
-    /// The table that kernels/walk/walk_cavities.h reads; returns false where there is none.
-    bool count_cavities(const WalkSurface& surface) {
-        if (!surface.lost)
-            return false;
-        plan_.counts.floats += surface.lost->table().size();
-        return true;
-    }
-
-    void plan_walked_conductor(const Conductor& conductor, double ior_above) {
+    /// A conductor's reflectance is tabulated; of what V-cavities lose there is the table that
+    /// kernels/walk/walk_cavities.h reads, and what a conductor keeps of it.
+    void plan_walked_surface(const SurfaceValues& surface) {
+        const std::shared_ptr<const LostFlux> lost = walk_surface(surface).lost;
+        if (lost)
+            plan_.counts.floats += lost->table().size();
+        if (!surface.is_conductor)
+            return;
         plan_.features.tabulated_reflectance = true;
-        plan_.counts.floats += spectral_nodes();
-        if (count_cavities(
-                conductor_surface(conductor_at(conductor, reference_nm), ior_above, reference_nm)))
-            plan_.counts.floats += row_; // what is kept of the light given back
+        plan_.counts.floats += spectral_nodes() + (lost ? row_ : 0);
     }
 
     void plan_substrate() {
@@ -233,14 +228,15 @@ private:
         const auto factors = 2 * static_cast<std::uint64_t>(on_cells.emission.cols());
         // the first bounce stands apart where light comes back to the substrate
         const bool has_first =
-            sigma() > 0.0 && plan_.choice.model == Model::Adding && !layers_.empty();
+            sigma() > 0.0 && plan_.choice.model == Model::Adding && !material_.stack.layers.empty();
         plan_.counts.floats += (has_first ? 2 : 1) * (1 + factors + dense) * row_;
         if (fluoresces && wavelengths_.hero > 0)
             plan_.counts.floats += lanes_ * row_; // probabilities of each shift
     }
 
     const Material& material_;
-    const std::vector<Layer>& layers_;
+    StackElements stack_;            ///< at the reference wavelength
+    std::vector<std::size_t> parts_; ///< elements that reflect
     const WavelengthPlan& wavelengths_;
     std::uint64_t lanes_, row_; ///< padded lanes, and those of all phases
     MaterialPlan plan_;

@@ -14,7 +14,7 @@ namespace {
 constexpr double least_choice = 0.05;
 
 /// 2 integral value(c) c dc by the midpoint rule in c^2.
-double cosine_mean(const StackOptics& optics, double (StackOptics::*value)(double) const) {
+double cosine_mean(const StackBsdf& optics, double (StackBsdf::*value)(double) const) {
     constexpr int points = 16;
     double sum = 0.0;
     for (int k = 0; k < points; ++k)
@@ -31,9 +31,9 @@ struct CosineLobe {
 CosineLobe cosine_lobe(const MaterialOptics& optics, const LaneOperator& substrate, int phase) {
     Eigen::VectorXd entering(substrate.diagonal.size()), residual(substrate.diagonal.size());
     for (Eigen::Index lane = 0; lane < entering.size(); ++lane) {
-        const StackOptics& o = optics.at(phase, static_cast<int>(lane));
-        entering(lane) = cosine_mean(o, &StackOptics::transmission);
-        residual(lane) = std::numbers::pi * cosine_mean(o, &StackOptics::residual);
+        const StackBsdf& o = optics.at(phase, static_cast<int>(lane));
+        entering(lane) = cosine_mean(o, &StackBsdf::transmission);
+        residual(lane) = std::numbers::pi * cosine_mean(o, &StackBsdf::residual_amplitude);
     }
     return {std::numbers::pi * substrate.row_sums().cwiseProduct(entering), residual};
 }
@@ -49,13 +49,14 @@ ComponentShares component_shares(const MaterialOptics& optics, const CosineLobe&
     ComponentShares result{std::vector<double>(static_cast<std::size_t>(3 + lobes), 0.0)};
     const auto lanes = static_cast<int>(lobe.diffuse.size());
     for (int lane = 0; lane < lanes; ++lane) {
-        const StackOptics& o = optics.at(phase, lane);
+        const StackBsdf& o = optics.at(phase, lane);
         std::vector<double> here(result.shares.size(), 0.0);
         here.front() = o.delta(cosine);
         const std::vector<double> rough = o.lobe_shares(cosine);
         std::copy(rough.begin(), rough.end(), here.begin() + 1);
         here.back() = o.transmission(cosine) * lobe.diffuse(lane) +
-                      o.residual(cosine) * lobe.residual(lane) + o.scattered_share(cosine);
+                      o.residual_amplitude(cosine) * lobe.residual(lane) +
+                      o.scattered_share(cosine);
         double sum = 0.0;
         for (const double share : here)
             sum += share;

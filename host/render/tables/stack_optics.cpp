@@ -1,66 +1,14 @@
 #include "host/render/tables/stack_optics.h"
 
-#include "host/render/tables/stack_parts.h"
-#include "host/render/tables/weidlich_wilkie_optics.h"
+#include "host/layers/models/weidlich_wilkie_bsdf.h"
+#include "host/scene/model/closed_model.h"
 #include "kernels/core/shared.h"
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 namespace reradiant {
 
 namespace {
-
-using std::numbers::pi;
-
-class AddingOptics final : public StackOptics {
-public:
-    explicit AddingOptics(std::shared_ptr<const AddingTransport> transport)
-        : transport_(std::move(transport)),
-          residual_scale_(transport_->residual_average() > 0.0
-                              ? 1.0 / std::sqrt(pi * transport_->residual_average())
-                              : 0.0) {}
-
-    double transmission(double c) const override { return transport_->transmission(c); }
-    double delta(double c) const override { return transport_->specular_delta(c); }
-    double residual(double c) const override { return residual_scale_ * transport_->residual(c); }
-    double amplitude(int lobe, double c) const override {
-        return transport_->lobe_amplitude(lobe, c);
-    }
-    /// Returns shares that go with the squares of the amplitudes and add up to what neither delta
-    /// nor residual reflects.
-    std::vector<double> lobe_shares(double c) const override {
-        std::vector<double> shares{transport_->has_top_lobe() ? 1.0 : 0.0};
-        const auto lobes = static_cast<int>(deeper_lobes().size());
-        for (int l = 0; l < lobes; ++l)
-            shares.push_back(amplitude(l, c) * amplitude(l, c));
-        double sum = 0.0;
-        for (const double share : shares)
-            sum += share;
-        const double all =
-            std::max(0.0, transport_->specular_albedo(c) - transport_->specular_delta(c) -
-                              transport_->residual(c));
-        for (double& share : shares)
-            share *= sum > 0.0 ? all / sum : 0.0;
-        return shares;
-    }
-    double internal_reflectance(double sigma) const override {
-        return transport_->internal_reflectance(sigma);
-    }
-    double diffuse_scale() const override {
-        return 1.0 / (pi * transport_->lowest_ior() * transport_->lowest_ior());
-    }
-    const std::vector<AddingTransport::Lobe>& deeper_lobes() const override {
-        return transport_->deeper_lobes();
-    }
-
-private:
-    std::shared_ptr<const AddingTransport> transport_;
-    double residual_scale_;
-};
 
 /// Lobes beneath the top one that adding makes at most: one for each rough interface and for each
 /// run of smooth ones beneath a rough one.
@@ -87,16 +35,9 @@ bool depends_on_wavelength(const Material& material) {
 }
 
 int deeper_lobe_count(const Material& material, Model model) {
-    return model == Model::WeidlichWilkie ? static_cast<int>(weidlich_wilkie_lobes(material).size())
-                                          : adding_lobe_count(material.stack);
-}
-
-std::unique_ptr<StackOptics> stack_optics(const Material& material, Model model,
-                                          double wavelength_nm) {
-    if (model == Model::WeidlichWilkie)
-        return weidlich_wilkie_optics(material, wavelength_nm);
-    return std::make_unique<AddingOptics>(
-        adding_transport(stack_at(material.stack, wavelength_nm)));
+    if (model != Model::WeidlichWilkie)
+        return adding_lobe_count(material.stack);
+    return static_cast<int>(weidlich_wilkie_lobes(material_at(material, reference_nm)).size());
 }
 
 MaterialOptics::MaterialOptics(const Material& material, Model model, const WavelengthPlan& plan)
@@ -106,7 +47,8 @@ MaterialOptics::MaterialOptics(const Material& material, Model model, const Wave
     tbb::parallel_for(0, count, [&](int i) {
         const double wavelength =
             spectral_ ? plan.wavelength_nm(i % lanes_, i / lanes_) : reference_nm;
-        optics_[static_cast<std::size_t>(i)] = stack_optics(material, model, wavelength);
+        optics_[static_cast<std::size_t>(i)] =
+            closed_model(model)(material_at(material, wavelength));
     });
 }
 

@@ -4,6 +4,7 @@
 #include "host/layers/walk/walk_surface.h"
 #include "host/render/plan/material_plan.h"
 #include "host/render/tables/substrate_tables.h"
+#include "host/scene/model/closed_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,12 +20,12 @@ namespace {
 constexpr double least_reference = 1e-3;
 
 /// A surface of a stack, or of its substrate; nothing beneath it yet.
-WalkPartRecord surface_part(double alpha, Distribution distribution, Scattering scattering) {
+WalkPartRecord surface_part(const SurfaceValues& surface) {
     WalkPartRecord part{};
     part.eta = part.ior = 1.0f;
-    part.alpha = static_cast<float>(alpha);
-    part.distribution = static_cast<std::uint32_t>(kernel_distribution(distribution));
-    part.multiple = scattering == Scattering::Multiple ? 1u : 0u;
+    part.alpha = static_cast<float>(surface.alpha);
+    part.distribution = static_cast<std::uint32_t>(kernel_distribution(surface.distribution));
+    part.multiple = surface.scattering == Scattering::Multiple ? 1u : 0u;
     part.albedo = 1.0f;
     part.cavities = part.reflectance = part.bounced = NO_INDEX;
     part.extinction = part.scattering = part.flakes = NO_INDEX;
@@ -53,36 +54,41 @@ class WalkTables {
 public:
     WalkTables(const Material& material, const MaterialPlan& plan,
                const WavelengthPlan& wavelengths, SceneTables& out)
-        : material_(material), layers_(material.stack.layers), plan_(plan), out_(out),
-          lanes_(wavelengths, out.tables) {}
+        : material_(material), plan_(plan), stack_(material_at(material, reference_nm)), out_(out),
+          lanes_(wavelengths, out.tables) {
+        for (int phase = 0; phase < lanes_.phases(); ++phase)
+            for (int lane = 0; lane < lanes_.lanes(); ++lane)
+                lane_stacks_.push_back(
+                    material_at(material, wavelengths.wavelength_nm(lane, phase)));
+    }
 
     void append() {
         record_.walk = static_cast<std::uint32_t>(out_.walk_parts.size());
-        record_.layer_count = static_cast<std::uint32_t>(layers_.size());
-        for (std::size_t k = 0; k < layers_.size(); ++k)
-            append_layer(k);
+        const std::size_t end = above_substrate(stack_).size();
+        for (std::size_t e = 0; e < end; ++e) {
+            if (const auto* interface = std::get_if<SurfaceValues>(&stack_[e]))
+                append_interface(*interface);
+            else if (const auto* slab = std::get_if<SlabValues>(&stack_[e]))
+                append_slab(plan_.slabs[record_.layer_count - 1], slab->anisotropy,
+                            out_.walk_parts.back());
+        }
         append_substrate_part();
         append_flakes();
         out_.materials.push_back(record_);
     }
 
 private:
-    void append_layer(std::size_t k) {
-        const Layer& layer = layers_[k];
-        const double ior = layer.ior(reference_nm);
-        WalkPartRecord part = surface_part(layer.alpha, layer.distribution, layer.scattering);
-        part.eta = static_cast<float>(ior / ior_of_medium(k));
-        part.ior = static_cast<float>(ior);
-        const WalkSurface surface = interface_surface(stack_at(material_.stack, reference_nm), k);
-        if (surface.lost)
-            part.cavities = append_cavities(*surface.lost);
-        append_slab(plan_.slabs[k], layer.anisotropy, part);
-        out_.walk_parts.push_back(part);
+    std::size_t index(int phase, int lane) const {
+        return static_cast<std::size_t>(phase * lanes_.lanes() + lane);
     }
 
-    /// Returns the IOR of the medium above interface `k` at reference_nm; 1 above the first.
-    double ior_of_medium(std::size_t k) const {
-        return k > 0 ? layers_[k - 1].ior(reference_nm) : 1.0;
+    void append_interface(const SurfaceValues& interface) {
+        ++record_.layer_count;
+        WalkPartRecord& part = out_.walk_parts.emplace_back(surface_part(interface));
+        part.eta = static_cast<float>(interface.ior_below / interface.ior_above);
+        part.ior = static_cast<float>(interface.ior_below);
+        if (const auto flux = walk_surface(interface).lost)
+            part.cavities = append_cavities(*flux);
     }
 
     std::uint32_t append_cavities(const LostFlux& flux) {
@@ -92,20 +98,18 @@ private:
         return offset;
     }
 
+    /// The slab's, in the part of the interface above it.
     void append_slab(const SlabDepths& depths, double anisotropy, WalkPartRecord& part) {
         if (!depths.absorbs() && !depths.scatters())
             return;
-        const auto at = [this](int phase, int lane) {
-            return static_cast<std::size_t>(phase * lanes_.lanes() + lane);
-        };
         part.least_depth = static_cast<float>(
             *std::min_element(depths.absorption.begin(), depths.absorption.end()));
         part.extinction = lanes_.append_lanes(
-            [&](int phase, int lane) { return depths.extinction(at(phase, lane)); });
+            [&](int phase, int lane) { return depths.extinction(index(phase, lane)); });
         if (!depths.scatters())
             return;
         part.scattering = lanes_.append_lanes(
-            [&](int phase, int lane) { return depths.scattering[at(phase, lane)]; });
+            [&](int phase, int lane) { return depths.scattering[index(phase, lane)]; });
         part.anisotropy = static_cast<float>(anisotropy);
         set_references(depths, part);
     }
@@ -114,39 +118,37 @@ private:
     void append_substrate_part() {
         Material bare = material_;
         bare.stack.layers.clear();
-        const MaterialOptics optics(bare, Model::Adding, lanes_.plan());
+        const MaterialOptics nothing(Material{}, Model::Adding, lanes_.plan());
         const LaneOperator middle =
-            append_substrate(bare, Model::Adding, optics, *plan_.on_cells, lanes_, record_, out_);
-        if (material_.substrate.type == SubstrateType::Conductor) {
-            append_conductor(material_.substrate.conductor, ior_of_medium(layers_.size()));
+            append_substrate(bare, Model::Adding, nothing, *plan_.on_cells, lanes_, record_, out_);
+        if (conductor_of(stack_)) {
+            append_conductor(stack_.size() - 1);
             return;
         }
-        WalkPartRecord part = surface_part(0.0, Distribution::Ggx, Scattering::Single);
+        WalkPartRecord part = surface_part({.scattering = Scattering::Single});
         part.albedo = static_cast<float>(
             std::clamp(std::numbers::pi * middle.row_sums().maxCoeff(), 0.0, 1.0));
         out_.walk_parts.push_back(part);
     }
 
     /// A conductor in a medium. Its reflectance at a facet is tabulated over the cosine there.
-    void append_conductor(const Conductor& conductor, double ior_above) {
-        const auto reflectance = [&](double cosine, int phase, int lane) {
-            const double nm = lanes_.plan().wavelength_nm(lane, phase);
-            return facet_reflectance(conductor_at(conductor, nm), ior_above, cosine);
+    void append_conductor(std::size_t element) {
+        const auto surface = [&](int phase, int lane) -> const SurfaceValues& {
+            return *surface_of(lane_stacks_[index(phase, lane)][element]);
         };
-        WalkPartRecord part =
-            surface_part(conductor.alpha, conductor.distribution, conductor.scattering);
-        part.reflectance = lanes_.append_nodes_of_lanes(reflectance);
+        const SurfaceValues& at_reference = *surface_of(stack_[element]);
+        WalkPartRecord part = surface_part(at_reference);
+        part.reflectance = lanes_.append_nodes_of_lanes([&](double cosine, int phase, int lane) {
+            return facet_reflectance(surface(phase, lane), cosine);
+        });
         double largest = 0.0;
         for (int lane = 0; lane < lanes_.lanes(); ++lane)
-            largest = std::max(largest, reflectance(1.0, lanes_.phases() / 2, lane));
+            largest = std::max(largest, facet_reflectance(surface(lanes_.phases() / 2, lane), 1.0));
         part.albedo = static_cast<float>(largest);
-        const auto surface = [&](double nm) {
-            return conductor_surface(conductor_at(conductor, nm), ior_above, nm);
-        };
-        if (const auto flux = surface(reference_nm).lost) {
+        if (const auto flux = walk_surface(at_reference).lost) {
             part.cavities = append_cavities(*flux);
             part.bounced = lanes_.append_lanes([&](int phase, int lane) {
-                return surface(lanes_.plan().wavelength_nm(lane, phase)).lost_reflectance;
+                return walk_surface(surface(phase, lane)).lost_reflectance;
             });
         }
         out_.walk_parts.push_back(part);
@@ -154,21 +156,25 @@ private:
 
     /// Sheets of flakes, after the substrate.
     void append_flakes() {
-        for (std::size_t k = 0; k < layers_.size(); ++k) {
-            if (!layers_[k].flakes || !(layers_[k].flakes->coverage > 0.0))
+        std::uint32_t layers = 0;
+        for (std::size_t e = 0; e < stack_.size(); ++e) {
+            layers += std::holds_alternative<SlabValues>(stack_[e]) ? 1u : 0u;
+            const auto* flakes = std::get_if<FlakesValues>(&stack_[e]);
+            if (!flakes)
                 continue;
-            WalkPartRecord& slab = out_.walk_parts[record_.walk + k];
+            WalkPartRecord& slab = out_.walk_parts[record_.walk + layers - 1];
             slab.flakes = static_cast<std::uint32_t>(out_.walk_parts.size()) - record_.walk;
-            slab.coverage = static_cast<float>(layers_[k].flakes->coverage);
-            append_conductor(layers_[k].flakes->reflector, layers_[k].ior(reference_nm));
+            slab.coverage = static_cast<float>(flakes->coverage);
+            append_conductor(e);
         }
     }
 
     const Material& material_;
-    const std::vector<Layer>& layers_;
     const MaterialPlan& plan_;
+    StackElements stack_; ///< at the reference wavelength
     SceneTables& out_;
     LaneTables lanes_;
+    std::vector<StackElements> lane_stacks_; ///< [phase][lane]
     MaterialRecord record_{};
 };
 

@@ -1,6 +1,6 @@
 #include "host/scene/mitsuba/mitsuba_scene.h"
-#include "reradiant/adding.h"
 #include "reradiant/colour.h"
+#include "reradiant/stack_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,14 +43,14 @@ toml::table mapped(const Spectrum& spectrum, const Map& map) {
 
 /// The share r of the light from the base that the coat sends back.
 double internal_reflectance(const toml::table& layer) {
-    LayerValues values;
-    values.ior = layer["ior"].value_or(1.0);
-    values.alpha = layer["alpha"].value_or(0.0);
-    values.distribution = layer["distribution"].value_or(std::string()) == "beckmann"
-                              ? Distribution::Beckmann
-                              : Distribution::Ggx;
-    values.scattering = Scattering::Single;
-    return adding_transport({values})->internal_reflectance();
+    SurfaceValues coat;
+    coat.ior_below = layer["ior"].value_or(1.0);
+    coat.alpha = layer["alpha"].value_or(0.0);
+    coat.distribution = layer["distribution"].value_or(std::string()) == "beckmann"
+                            ? Distribution::Beckmann
+                            : Distribution::Ggx;
+    coat.scattering = Scattering::Single;
+    return adding_transport({coat, SlabValues{coat.ior_below}})->internal_reflectance();
 }
 
 } // namespace

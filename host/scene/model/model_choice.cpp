@@ -1,6 +1,6 @@
 #include "host/scene/model/model_choice.h"
 
-#include "reradiant/adding.h"
+#include "reradiant/stack_model.h"
 
 namespace reradiant {
 

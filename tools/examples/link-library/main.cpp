@@ -1,10 +1,10 @@
 // Links the library: what a varnish lets in and keeps back, and the colour of a fluorescent orange.
 // Prints transmission, internal reflectance and XYZ under D65.
-#include "reradiant/adding.h"
 #include "reradiant/colour_of_matrix.h"
 #include "reradiant/error.h"
 #include "reradiant/paths.h"
 #include "reradiant/reradiation_file.h"
+#include "reradiant/stack_model.h"
 
 #include <cstdio>
 

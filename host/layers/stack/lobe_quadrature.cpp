@@ -1,7 +1,7 @@
-#include "host/measure/lobe_quadrature.h"
+#include "host/layers/stack/lobe_quadrature.h"
 
+#include "host/layers/stack/directions.h"
 #include "host/layers/stack/quadrature.h"
-#include "host/measure/surface_angles.h"
 
 #include <algorithm>
 #include <cmath>

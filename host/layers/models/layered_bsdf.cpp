@@ -1,0 +1,244 @@
+#include "host/layers/models/layered_bsdf.h"
+
+#include "host/layers/models/effective_matrix.h"
+#include "host/layers/stack/directions.h"
+#include "host/layers/stack/quadrature.h"
+#include "kernels/scatter/oren_nayar.h"
+#include "kernels/stack/layer_stack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+
+namespace reradiant {
+
+using kernels::Vec3;
+
+namespace {
+
+/// The cosine's least share: it finds what no lobe of its own covers.
+constexpr double least_cosine = 0.1;
+
+/// Outgoing directions of one half of the hemisphere (the other half is its mirror image) with
+/// their weights, cosine included, for both halves.
+struct WeightedDirection {
+    Vec3 direction;
+    double weight;
+};
+std::vector<WeightedDirection> half_hemisphere(const std::vector<double>& breaks) {
+    // Oren-Nayar's shape has a kink at 90 degrees of azimuth
+    const Quadrature& azimuths = gauss_legendre(12);
+    const Quadrature& rule = gauss_legendre(32);
+    std::vector<WeightedDirection> directions;
+    for (std::size_t piece = 0; piece + 1 < breaks.size(); ++piece) {
+        const double width = breaks[piece + 1] - breaks[piece];
+        for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+            const double u = 0.5 * std::numbers::pi * rule.nodes[i];
+            const double s = std::sin(u);
+            const double c = breaks[piece] + width * s * s;
+            const double weight = rule.weights[i] * std::numbers::pi * s * std::cos(u) * width * c;
+            for (std::size_t k = 0; k < azimuths.nodes.size(); ++k) {
+                const double phi = 0.5 * std::numbers::pi * azimuths.nodes[k];
+                for (const double azimuth : {phi, std::numbers::pi - phi}) {
+                    directions.push_back({direction_at(c, azimuth),
+                                          std::numbers::pi * azimuths.weights[k] * weight});
+                }
+            }
+        }
+    }
+    return directions;
+}
+
+} // namespace
+
+struct LayeredBsdf::Choices {
+    static constexpr int nodes = 9;
+    std::once_flag made;
+    std::array<Choice, nodes> at_node;
+};
+
+LayeredBsdf::LayeredBsdf(const LayerStack& stack, const SubstrateValues& substrate,
+                         const WavelengthGrid& bands, ClosedModel model)
+    : has_conductor_(!substrate.conductor.empty()), sigma_(substrate.sigma),
+      first_(substrate.matrix), choices_(std::make_shared<Choices>()) {
+    Eigen::VectorXd r(bands.count);
+    for (int band = 0; band < bands.count; ++band) {
+        stacks_.push_back(stack_over(stack_at(stack, bands.centre_nm(band)),
+                                     substrate.at_band(static_cast<std::size_t>(band))));
+        const bool same = like_the_last(band);
+        models_.push_back(same ? models_.back() : model(stacks_.back()));
+        r(band) = same ? r(band - 1) : models_.back()->internal_reflectance(sigma_);
+    }
+    rest_ = has_conductor_ ? Eigen::MatrixXd::Identity(bands.count, bands.count)
+                           : effective_matrix(kernels::oren_nayar_mean_albedo(sigma_) * first_, r);
+    lobes_ = at(bands.count / 2).lobes();
+}
+
+bool LayeredBsdf::like_the_last(int band) const {
+    const auto k = static_cast<std::size_t>(band);
+    return k > 0 && stacks_[k] == stacks_[k - 1];
+}
+
+Eigen::MatrixXd LayeredBsdf::eval(const Vec3& wi, const Vec3& wo) const {
+    if (!(wi.z > 0.0) || !(wo.z > 0.0))
+        return Eigen::MatrixXd::Zero(bands(), bands());
+    Eigen::MatrixXd f = diffuse(wi, wo);
+    for (int band = 0; band < bands(); ++band)
+        f(band, band) += at(band).specular(wi, wo);
+    return f;
+}
+
+/// {first M + rest B} way_in with the weights of each emitted band.
+template <typename WayOut, typename WayIn>
+Eigen::MatrixXd LayeredBsdf::between(const WayOut& way_out, const WayIn& way_in) const {
+    Eigen::MatrixXd result(bands(), bands());
+    for (int o = 0; o < bands(); ++o) {
+        const OrenNayarWeights weights = way_out(o);
+        result.row(o) = weights.first * first_.row(o) + weights.rest * rest_.row(o);
+    }
+    for (int i = 0; i < bands(); ++i)
+        result.col(i) *= way_in(i);
+    return result;
+}
+
+Eigen::MatrixXd LayeredBsdf::diffuse(const Vec3& wi, const Vec3& wo) const {
+    if (has_conductor_) {
+        Eigen::VectorXd diagonal(bands());
+        for (int band = 0; band < bands(); ++band)
+            diagonal(band) = at(band).conductor(wi, wo);
+        return diagonal.asDiagonal();
+    }
+    return between([&](int band) { return at(band).way_out(sigma_, wi, wo); },
+                   [&](int band) { return at(band).way_in(wi, wo); });
+}
+
+Eigen::MatrixXd LayeredBsdf::diffuse_albedo(double c) const {
+    if (has_conductor_)
+        return conductor_albedo(c);
+    const Vec3 wi = direction_at(c, 0.0);
+    std::vector<OrenNayarWeights> whole;
+    for (int band = 0; band < bands(); ++band) {
+        if (like_the_last(band)) {
+            whole.push_back(whole.back());
+            continue;
+        }
+        const std::optional<OrenNayarWeights> own = at(band).whole_way_out(sigma_, c);
+        if (!own)
+            return joint_albedo(c);
+        whole.push_back(*own);
+    }
+    return between([&](int band) { return whole[static_cast<std::size_t>(band)]; },
+                   [&](int band) { return at(band).way_in(wi, wi); });
+}
+
+Eigen::MatrixXd LayeredBsdf::conductor_albedo(double c) const {
+    Eigen::VectorXd diagonal(bands());
+    for (int band = 0; band < bands(); ++band)
+        diagonal(band) = like_the_last(band) ? diagonal(band - 1) : at(band).conductor_albedo(c);
+    return diagonal.asDiagonal();
+}
+
+/// Both ways depend on the half vector of rough interfaces, so they are integrated together.
+Eigen::MatrixXd LayeredBsdf::joint_albedo(double c) const {
+    const Vec3 wi = direction_at(c, 0.0);
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(bands(), bands());
+    for (const WeightedDirection& wo : half_hemisphere(breaks_of_all(c)))
+        result += wo.weight * diffuse(wi, wo.direction);
+    return result;
+}
+
+/// Pieces that suit all bands and the larger angle of Oren-Nayar's shape. A dispersive stack has
+/// too many critical cosines to give each a piece of its own.
+std::vector<double> LayeredBsdf::breaks_of_all(double cos_i) const {
+    std::vector<double> breaks;
+    for (const StackElements& stack : stacks_) {
+        const std::vector<double> own = breaks_in_air(stack);
+        breaks.insert(breaks.end(), own.begin(), own.end());
+    }
+    breaks = breaks_between_0_and_1(breaks);
+    if (breaks.size() > 8)
+        breaks = {0.25, 0.5, 0.75};
+    breaks.push_back(cos_i);
+    return breaks_between_0_and_1(breaks);
+}
+
+Eigen::VectorXd LayeredBsdf::delta(double cos_theta) const {
+    Eigen::VectorXd weight(bands());
+    for (int band = 0; band < bands(); ++band)
+        weight(band) = at(band).delta(cos_theta);
+    return weight;
+}
+
+/// Shares of the light, means over the bands of what each emits under white light.
+LayeredBsdf::Choice LayeredBsdf::choice_at_node(double cos_theta) const {
+    double mirror = 0.0, lobes = 0.0, cosine = 0.0;
+    const Eigen::VectorXd diffuse = diffuse_albedo(cos_theta).rowwise().sum();
+    for (int band = 0; band < bands(); ++band) {
+        const double specular_delta = at(band).specular_delta(cos_theta);
+        const double conductor_delta = at(band).conductor_delta(cos_theta);
+        mirror += specular_delta + conductor_delta;
+        lobes += at(band).specular_albedo(cos_theta) - specular_delta;
+        (has_conductor_ ? lobes : cosine) += diffuse(band) - conductor_delta;
+    }
+    if (lobes_.empty()) {
+        cosine += lobes;
+        lobes = 0.0;
+    }
+    const double sum = mirror + lobes + cosine;
+    if (!(sum > 0.0))
+        return {};
+    const double rest = 1.0 - least_cosine;
+    const double count = std::max<double>(1.0, static_cast<double>(lobes_.size()));
+    return {rest * mirror / sum, least_cosine + rest * cosine / sum, rest * lobes / (sum * count)};
+}
+
+LayeredBsdf::Choice LayeredBsdf::choice(double cos_theta) const {
+    constexpr int nodes = Choices::nodes;
+    std::call_once(choices_->made, [this] {
+        for (int node = 0; node < nodes; ++node) {
+            const double u = static_cast<double>(node) / (nodes - 1);
+            // at grazing light itself nothing is transported
+            choices_->at_node[static_cast<std::size_t>(node)] =
+                choice_at_node(std::max(u * u, 1e-4));
+        }
+    });
+    const double x = std::sqrt(std::clamp(cos_theta, 0.0, 1.0)) * (nodes - 1);
+    const int node = std::min(static_cast<int>(x), nodes - 2);
+    const double t = x - node;
+    const Choice& a = choices_->at_node[static_cast<std::size_t>(node)];
+    const Choice& b = choices_->at_node[static_cast<std::size_t>(node) + 1];
+    return {std::lerp(a.mirror, b.mirror, t), std::lerp(a.cosine, b.cosine, t),
+            std::lerp(a.lobe, b.lobe, t)};
+}
+
+LayeredBsdf::Sample LayeredBsdf::sample(const Vec3& w, const std::array<double, 3>& random) const {
+    const Choice chosen = choice(w.z);
+    if (random[0] < chosen.mirror)
+        return {kernels::vec3(-w.x, -w.y, w.z), chosen.mirror, true};
+    double bound = chosen.mirror;
+    for (const LobeShape& lobe : lobes_) {
+        bound += chosen.lobe;
+        if (random[0] < bound) {
+            const Vec3 other = kernels::layer_stack_sample_lobe(
+                kernel_distribution(lobe.distribution), lobe.alpha, w, random[1], random[2]);
+            return {other, pdf(w, other), false};
+        }
+    }
+    const Vec3 other = kernels::sampling_cosine(random[1], random[2]);
+    return {other, pdf(w, other), false};
+}
+
+double LayeredBsdf::pdf(const Vec3& w, const Vec3& other) const {
+    if (!(w.z > 0.0) || !(other.z > 0.0))
+        return 0.0;
+    const Choice chosen = choice(w.z);
+    double sum = chosen.cosine * other.z * std::numbers::inv_pi;
+    for (const LobeShape& lobe : lobes_) {
+        sum += chosen.lobe * kernels::layer_stack_lobe_pdf(kernel_distribution(lobe.distribution),
+                                                           lobe.alpha, w, other);
+    }
+    return sum;
+}
+
+} // namespace reradiant
