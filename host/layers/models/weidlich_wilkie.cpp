@@ -144,16 +144,20 @@ double WeidlichWilkie::diffuse_shape(const StackElements& stack, double sigma, c
 }
 
 double WeidlichWilkie::conductor(const StackElements& stack, const Vec3& wi, const Vec3& wo) {
-    const Descent d = arrive(stack, wi, wo);
     const SurfaceValues* conductor = conductor_of(stack);
-    return conductor && d.passes() ? d.through() * facet_lobe(*conductor, d) : 0.0;
+    if (!conductor)
+        return 0.0;
+    const Descent d = arrive(stack, wi, wo);
+    return d.passes() ? d.through() * facet_lobe(*conductor, d) : 0.0;
 }
 
 double WeidlichWilkie::conductor_delta(const StackElements& stack, double cos_theta) {
+    const SurfaceValues* conductor = conductor_of(stack);
+    if (!conductor)
+        return 0.0;
     const auto [wi, wo] = mirror_pair(cos_theta);
     const Descent d = arrive(stack, wi, wo);
-    const SurfaceValues* conductor = conductor_of(stack);
-    return conductor && d.passes() ? d.through() * mirror(*conductor, d) : 0.0;
+    return d.passes() ? d.through() * mirror(*conductor, d) : 0.0;
 }
 
 } // namespace reradiant
