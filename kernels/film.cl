@@ -63,8 +63,8 @@ float film_luminance(const float16* value, __global const float* y_weights) {
     return (y4.x + y4.y) + (y4.z + y4.w);
 }
 
-/// What is kept of a pixel besides its bands: sums of Y and of Y^2, their compensations, samples
-/// refused, and (an integer) samples taken.
+/// These numbers are kept of a pixel besides its bands: sums of Y and of Y^2, their compensations,
+/// samples refused, and (an integer) samples taken.
 typedef struct {
     float2 y, y_compensation;
     float refused;

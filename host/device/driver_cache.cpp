@@ -60,7 +60,7 @@ fs::path own_mark;
 
 void mark(const fs::path& folder) {
     own_mark = folder / (mark_prefix + std::to_string(::getpid()));
-    std::ofstream{own_mark};
+    std::ofstream(own_mark, std::ios::app).flush();
     std::atexit([] {
         std::error_code ignored;
         fs::remove(own_mark, ignored);

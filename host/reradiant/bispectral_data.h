@@ -1,7 +1,7 @@
 #pragma once
 
 #include "reradiant/reradiation.h"
-#include "reradiant/table_form.h"
+#include "reradiant/spectral_files.h"
 #include "reradiant/wavelength_grid.h"
 
 #include <Eigen/Core>

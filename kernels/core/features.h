@@ -1,4 +1,4 @@
-// What kernels are specialised by: the feature bits, what follows from them, and sizes. The host
+// Kernels are specialised by these: the feature bits, what follows from them, and sizes. The host
 // derives them from the scene (host/render/plan/render_plan.h) and passes each as -D NAME=VALUE;
 // the defaults let every file of the kernels compile alone with everything on. A bit that is off
 // removes code, tables, buffers and launches. Structure by define, numbers by argument.

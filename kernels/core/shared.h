@@ -253,7 +253,7 @@ ASSERT_SIZE(PixelSamples, 8);
 /// Numbers that the film keeps of a pixel besides its bands (film.cl).
 #define FILM_STATISTICS 6
 
-/// What stays as it is through a whole render.
+/// A `RenderRecord` holds the numbers that stay as they are through a whole render.
 typedef struct {
     CameraRecord camera;
     EnvironmentRecord image;          ///< the environment where it is an image

@@ -31,9 +31,9 @@ DEVICE_FUNCTION TableStencil table_stencil(real cosine) {
     return s;
 }
 
-/// How many of `count` ascending numbers, `stride` floats apart, are not above x: the index of the
-/// first that is. With a table of cumulative probabilities, less its last, and x uniform in [0, 1),
-/// that is the choice.
+/// Counts those of `count` ascending numbers, `stride` floats apart, that are not above x: the
+/// index of the first that is. With a table of cumulative probabilities, less its last, and x
+/// uniform in [0, 1), that is the choice.
 #ifdef __OPENCL_VERSION__
 typedef __global const shared_float* TableNumbers;
 #else

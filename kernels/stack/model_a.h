@@ -37,8 +37,8 @@ DEVICE_FUNCTION void model_a_pass(LayerDescent* d, real share_in, real share_out
     d->way_out *= share_out;
 }
 
-/// How two directions meet an interface: their cosines there, and the share G of its facets that
-/// see both.
+/// A `LayerMeeting` says how two directions meet an interface: their cosines there, and the share G
+/// of its facets that see both.
 typedef struct {
     real cos_i, cos_o, g;
 } LayerMeeting;

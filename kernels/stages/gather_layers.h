@@ -7,9 +7,9 @@
 #include "kernels/stages/gather_specular.h"
 #include "kernels/stages/gather_substrate.h"
 
-/// What comes to a vertex: `down` to the substrate, `first` to meet it once (oren-nayar), `up` by
-/// the specular part, `left` what is known to leave. Without Oren-Nayar `first` is `down`, and
-/// without hero wavelengths `up` leaves as it is.
+/// These are the vectors that come to a vertex: `down` to the substrate, `first` to meet it once
+/// (oren-nayar), `up` by the specular part, `left` what is known to leave. Without Oren-Nayar
+/// `first` is `down`, and without hero wavelengths `up` leaves as it is.
 typedef struct {
     Lanes down[PATH_CHUNKS], up[PATH_CHUNKS];
 #if FEATURE_OREN_NAYAR

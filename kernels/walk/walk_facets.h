@@ -36,7 +36,7 @@ KERNELS_BEGIN
 #define WALK_MOST_HEIGHT (REAL(1.0) - REAL(1e-16))
 #endif
 
-/// What the host keeps in double it reads in double.
+/// Tables of the walk hold floats on the device and doubles on the host.
 #ifdef __OPENCL_VERSION__
 typedef __global const shared_float* WalkTable;
 #else
@@ -193,8 +193,8 @@ DEVICE_FUNCTION real walk_single_share(WalkSurface surface, Vec3 v, Vec3 h, Vec3
     }
 }
 
-/// The same over a facet as microfacet_sample draws it, which for blinn knows of no masking: G2
-/// (v.h) / (v.z h.z), up to 2.
+/// Returns the share of light towards w that single scattering lets out, over a facet as
+/// microfacet_sample draws it; blinn is drawn without masking: G2 (v.h) / (v.z h.z), up to 2.
 DEVICE_FUNCTION real walk_drawn_share(WalkSurface surface, Vec3 v, Vec3 h, Vec3 w, real cos_w) {
     if (surface.distribution == MICROFACET_BLINN) {
         const real cos_v = vec3_dot(v, h);

@@ -42,7 +42,8 @@ DEVICE_FUNCTION real walk_next_height(WalkSurface surface, Vec3 w, real height, 
                : walk_height_above(height, walk_lambda(surface, w), log(u));
 }
 
-/// The same for a ray that is known not to leave; where next to all leave it has a limit.
+/// Returns the next height of a ray that is known not to leave. Where nearly all leave, the limit
+/// is taken.
 DEVICE_FUNCTION real walk_met_height(WalkSurface surface, Vec3 w, real height, real u) {
     real lambda, stays;
     if (!(w.z > REAL(0.0)))

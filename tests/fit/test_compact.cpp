@@ -1,5 +1,5 @@
-#include "host/fit/models/knot_choice.h"
-#include "host/fit/models/smooth_basis.h"
+#include "host/fit/factors/knot_choice.h"
+#include "host/fit/factors/smooth_basis.h"
 #include "reradiant/error.h"
 #include "tests/fit/fit_cases.h"
 

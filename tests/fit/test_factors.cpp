@@ -1,4 +1,4 @@
-#include "host/fit/models/factor_model.h"
+#include "host/fit/factors/factor_model.h"
 #include "reradiant/error.h"
 #include "tests/fit/fit_cases.h"
 #include "tests/support/full_run.h"

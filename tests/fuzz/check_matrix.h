@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace reradiant::fuzz {

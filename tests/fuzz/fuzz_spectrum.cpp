@@ -1,5 +1,4 @@
-#include "reradiant/reradiation_file.h"
-#include "reradiant/spectrum_file.h"
+#include "reradiant/spectral_files.h"
 #include "tests/fuzz/check_spectrum.h"
 
 // A spectrum of any format that the file says it is of; two columns (.spd and the CSV of spectra),

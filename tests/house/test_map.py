@@ -6,7 +6,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HOST = ROOT / "host"
-MOST_FILES = 28
+MOST_FILES = 25
 WITHOUT_HEADER = ["toml_implementation.cpp"]
 DOCUMENTS = [ROOT / "README.md", *(ROOT / folder / "README.md" for folder in ("host", "kernels", "spectra", "tests")),
              ROOT / "tools/bench/README.md", *sorted((ROOT / "tools/docs").glob("*.md"))]
@@ -83,7 +83,7 @@ class Map(unittest.TestCase):
         self.assertEqual(wrong, [])
 
     def test_folders_are_small(self):
-        folders = [*HOST.rglob("*"), *(ROOT / "kernels").rglob("*")]
+        folders = [*HOST.rglob("*"), *(ROOT / "kernels").rglob("*"), *(ROOT / "tools").glob("*")]
         large = {str(folder.relative_to(ROOT)): count for folder in folders if folder.is_dir()
                  for count in [sum(1 for file in folder.iterdir() if file.suffix in (".h", ".cpp", ".cl"))]
                  if count > MOST_FILES}

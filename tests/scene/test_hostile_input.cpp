@@ -1,4 +1,4 @@
-#include "host/scene/toml/load_state.h"
+#include "host/scene/document/load_state.h"
 #include "reradiant/scene_file.h"
 #include "tests/scene/scratch.h"
 

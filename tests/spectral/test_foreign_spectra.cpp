@@ -1,5 +1,4 @@
-#include "reradiant/reradiation_file.h"
-#include "reradiant/spectrum_file.h"
+#include "reradiant/spectral_files.h"
 #include "tests/spectral/refusal.h"
 #include "tests/support/scratch_folder.h"
 

@@ -1,6 +1,5 @@
 #include "reradiant/error.h"
-#include "reradiant/reradiation_file.h"
-#include "reradiant/spectrum_file.h"
+#include "reradiant/spectral_files.h"
 #include "tests/support/scratch_folder.h"
 
 #include <chrono>

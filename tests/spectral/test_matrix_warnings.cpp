@@ -1,7 +1,7 @@
 #include "host/base/output_ending.h"
 #include "host/spectral/evidence/matrix_evidence.h"
 #include "host/spectral/evidence/matrix_warnings.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 #include "tests/support/scratch_folder.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 #include "reradiant/colour_of_matrix.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 #include "host/spectral/evidence/undeclared_table.h"
-#include "reradiant/reradiation_file.h"
-#include "reradiant/spectrum_file.h"
+#include "reradiant/spectral_files.h"
 #include "tests/spectral/refusal.h"
 #include "tests/support/scratch_folder.h"
 

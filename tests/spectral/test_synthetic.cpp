@@ -1,6 +1,6 @@
 #include "reradiant/colour.h"
 #include "reradiant/paths.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 #include "tests/spectral/synthetic_recipes.h"
 
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include "host/spectral/evidence/plausible_matrix.h"
 #include "host/spectral/spectrum/rounded_grid.h"
 #include "reradiant/reradiation.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"
 #include "tools/python/values.h"

@@ -1,9 +1,8 @@
 #include "host/report/svg.h"
 #include "host/spectral/text/wavelength_unit.h"
 #include "reradiant/colour.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 #include "reradiant/spectrum.h"
-#include "reradiant/spectrum_file.h"
 #include "tools/python/bindings.h"
 #include "tools/python/values.h"
 

@@ -8,7 +8,7 @@
 #include "host/spectral/text/text_reader.h"
 #include "reradiant/measure.h"
 #include "reradiant/reradiation.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include <Eigen/Core>
 #include <fmt/core.h>

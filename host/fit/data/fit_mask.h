@@ -2,7 +2,7 @@
 
 #include "host/spectral/evidence/scatter_contrast.h"
 #include "reradiant/bispectral_data.h"
-#include "reradiant/fit_mask.h"
+#include "reradiant/fit.h"
 
 namespace reradiant {
 

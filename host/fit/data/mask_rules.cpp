@@ -1,4 +1,4 @@
-#include "reradiant/fit_mask.h"
+#include "reradiant/fit.h"
 
 #include "host/spectral/text/text_reader.h"
 #include "reradiant/error.h"

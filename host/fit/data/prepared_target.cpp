@@ -39,8 +39,7 @@ void note_empty_columns(const PreparedTarget& prepared, const Matrix& value,
     std::string list;
     int count = 0;
     for (int i = 0; i < prepared.target.excitation.count; ++i) {
-        const auto column = value.col(i).array();
-        if ((column == column).any())
+        if (!value.col(i).array().isNaN().all())
             continue;
         list +=
             fmt::format("{}{}", count++ > 0 ? ", " : "", prepared.target.excitation.centre_nm(i));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/fit/models/factor_start.h"
+#include "host/fit/factors/factor_start.h"
 #include "host/fit/solver/non_negative_solver.h"
 
 #include <Eigen/Core>

@@ -26,7 +26,7 @@ public:
     bool may_be_negative(Eigen::Index parameter) const override { return parameter % 5 != 0; }
     void add_residuals(ceres::Problem& problem, const std::vector<double*>& blocks) const override;
     Eigen::MatrixXd matrix(const Eigen::VectorXd& parameters) const override;
-    std::size_t stored_numbers() const override { return static_cast<std::size_t>(5 * count_); }
+    std::size_t stored_numbers() const override { return 5 * static_cast<std::size_t>(count_); }
     int terms() const override { return count_; }
     int term_of(Eigen::Index parameter) const override { return static_cast<int>(parameter / 5); }
     FactorCurves curves(const Eigen::VectorXd& parameters) const override;

@@ -2,7 +2,7 @@
 
 #include "host/fit/data/fit_mask.h"
 #include "host/fit/data/prepared_target.h"
-#include "host/fit/models/factor_fit.h"
+#include "host/fit/factors/factor_fit.h"
 #include "host/fit/models/gaussian_fit.h"
 #include "host/fit/models/matrix_fit.h"
 #include "host/fit/result/error_bands.h"

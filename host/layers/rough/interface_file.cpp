@@ -19,7 +19,7 @@ namespace {
 
 /// This version must be raised when the numbers or the layout of a stored operator change.
 constexpr std::uint32_t format_version = 3;
-constexpr auto side = static_cast<std::size_t>(2 * interface_cells);
+constexpr auto side = 2 * static_cast<std::size_t>(interface_cells);
 
 std::uint64_t bits_of(double value) {
     std::uint64_t bits = 0;

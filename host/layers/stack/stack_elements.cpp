@@ -72,7 +72,7 @@ StackElements stack_over(StackElements stack, StackElement substrate) {
         conductor->ior_above = ior;
     else
         std::get<DiffuseValues>(substrate).ior_above = ior;
-    stack.push_back(std::move(substrate));
+    stack.push_back(substrate);
     return stack;
 }
 

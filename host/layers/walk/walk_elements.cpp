@@ -31,7 +31,7 @@ Eigen::MatrixXd checked_matrix(const SubstrateValues& substrate, std::size_t ban
     return substrate.matrix;
 }
 
-/// What the walk needs of an element.
+/// Returns what the walk needs of an element.
 struct WalkElementOf {
     WalkElement operator()(const SurfaceValues& surface) const {
         const Kind kind = surface.is_conductor ? Kind::Conductor : Kind::Surface;

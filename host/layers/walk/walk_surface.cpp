@@ -57,7 +57,7 @@ struct Side {
                    ? kernels::walk_refraction_density(facets, v, r, 1.0 - reflectance(r.cos_i))
                    : 0.0;
     }
-    /// The same with the cosine of w, of what single scattering lets out.
+    /// Returns the density that single scattering lets out, times the cosine of w.
     double single_density(const Vec3& v, const Vec3& w, bool reflects) const {
         if (reflects) {
             const Vec3 h = kernels::walk_half_reflected(v, w);

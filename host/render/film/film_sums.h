@@ -26,12 +26,15 @@ struct FilmLayout {
     std::vector<WavelengthPlan::Deposit> columns;
 
     int rows() const { return band_variance ? 4 : 3; }
-    std::size_t floats_per_pixel() const { return static_cast<std::size_t>(rows() * lanes); }
+    std::size_t floats_per_pixel() const {
+        return static_cast<std::size_t>(rows()) * static_cast<std::size_t>(lanes);
+    }
 };
 constexpr std::size_t film_statistics_per_pixel = FILM_STATISTICS;
 
-/// How the sums are kept, and how many columns there are; nothing that is stored by lane.
+/// Returns how the sums are kept and how many columns there are, without what is stored by lane.
 FilmLayout film_shape(const WavelengthPlan& plan, bool band_variance, bool force_scatter);
+/// Returns the whole layout: film_shape with bands and weights of every lane.
 FilmLayout film_layout(const WavelengthPlan& plan, bool band_variance, bool force_scatter);
 
 /// Sums of all samples of successive pixels, where the device keeps them.

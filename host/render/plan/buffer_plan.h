@@ -11,7 +11,7 @@ namespace reradiant {
 // The arrays of a render on its device, each once: BUFFER(type of an element, name). Kernels know
 // them by the same names (kernels/stages/arguments.h).
 
-// What kernels read of the scene, as it stands in SceneTables.
+// These hold the scene, as it stands in SceneTables.
 #define SCENE_BUFFERS(BUFFER)                                                                      \
     BUFFER(MaterialRecord, materials)                                                              \
     BUFFER(LayerRecord, layers)                                                                    \
@@ -22,13 +22,13 @@ namespace reradiant {
     BUFFER(WalkPartRecord, walk_parts)                                                             \
     BUFFER(shared_float, tables)
 
-// What they read of the film's layout.
+// These hold the film's layout.
 #define LAYOUT_BUFFERS(BUFFER)                                                                     \
     BUFFER(shared_int, film_bands)                                                                 \
     BUFFER(shared_float, film_weights)                                                             \
     BUFFER(shared_float, y_weights)
 
-// What they keep of the paths of a batch.
+// These keep the paths of a batch.
 #define PATH_BUFFERS(BUFFER)                                                                       \
     /* [path]; live: [2][path], those that reach an even and an odd depth */                       \
     BUFFER(RayRecord, rays)                                                                        \

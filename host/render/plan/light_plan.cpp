@@ -52,7 +52,7 @@ LightSpectrum plain_spectrum(const Spectrum& spectrum, const WavelengthPlan& wav
     return light;
 }
 
-/// What red, green and blue of an environment's image stand for.
+/// Returns the spectra that red, green and blue of an environment's image stand for.
 LightSpectrum image_spectrum(const EnvironmentLight& sky, const Image& image,
                              const WavelengthPlan& wavelengths) {
     LightSpectrum light;
@@ -65,7 +65,7 @@ LightSpectrum image_spectrum(const EnvironmentLight& sky, const Image& image,
     return light;
 }
 
-/// Constant environments are one.
+/// Returns the sum of all constant environments, which are rendered as one.
 Spectrum constant_environment(const Scene& scene) {
     Spectrum sum;
     for (const Light& light : scene.lights)

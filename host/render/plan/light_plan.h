@@ -9,7 +9,7 @@
 
 namespace reradiant {
 
-/// What one light sends.
+/// A `LightSpectrum` is what one light sends.
 struct LightSpectrum {
     /// [phase][lane]; three of them, one for each colour, for an image; empty for one that is
     /// black.
@@ -26,9 +26,10 @@ struct LightPlan {
     RenderFeatures features;
 };
 
-/// Bits of all lights, as if none of them were black: known at once.
+/// Returns the bits of all lights as if none of them were black, which takes no time.
 RenderFeatures features_of_lights(const Scene& scene);
 
+/// Samples the spectra of all lights at the plan's wavelengths.
 LightPlan plan_lights(const Scene& scene, const WavelengthPlan& wavelengths);
 
 } // namespace reradiant

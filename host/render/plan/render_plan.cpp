@@ -184,7 +184,7 @@ private:
         counts.textures = scene_.textures.size();
         counts.lights = scene_.lights.size();
         counts.tables = plan_.lights.floats + texture_floats(scene_);
-        const auto choices = static_cast<std::uint64_t>(4 + plan_.features.lobes);
+        const auto choices = 4 + static_cast<std::uint64_t>(plan_.features.lobes);
         for (const MaterialPlan& material : plan_.materials) {
             counts.layers += material.counts.layers;
             counts.lobes += material.counts.lobes;

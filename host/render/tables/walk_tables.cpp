@@ -79,7 +79,8 @@ public:
 
 private:
     std::size_t index(int phase, int lane) const {
-        return static_cast<std::size_t>(phase * lanes_.lanes() + lane);
+        return static_cast<std::size_t>(phase) * static_cast<std::size_t>(lanes_.lanes()) +
+               static_cast<std::size_t>(lane);
     }
 
     void append_interface(const SurfaceValues& interface) {

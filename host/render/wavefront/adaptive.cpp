@@ -30,7 +30,8 @@ struct Tiles {
         return pixel / w / tile_edge * static_cast<std::size_t>(columns) + pixel % w / tile_edge;
     }
     const Tile& at(int column, int row) const {
-        return all[static_cast<std::size_t>(row * columns + column)];
+        return all[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                   static_cast<std::size_t>(column)];
     }
 
     int columns, rows;

@@ -35,7 +35,7 @@ RenderRecord render_record(const RenderPlan& plan, const SceneTables& scene) {
             plan.path_capacity};
 }
 
-// What kernels/stages/arguments.h lists becomes the arguments of a call: arrays by their names
+// The lists of kernels/stages/arguments.h become the arguments of a call: arrays by their names
 // among the buffers, or the strip's, and records by the names that they have where the call stands.
 template <typename T>
 const cl::Buffer& bound_array(const DeviceArray<T>& array) {

@@ -89,7 +89,7 @@ private:
     Kernel generate_, shade_, gather_, film_kernel_;
     WavefrontBuffers buffers_;
     DeviceFilm film_;
-    /// How many of the batch's paths reach a depth, of even and of odd ones.
+    /// Counts of the batch's paths that reach an even and an odd depth.
     std::array<std::uint32_t, 2> live_count_{};
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/scene/toml/load_state.h"
+#include "host/scene/document/load_state.h"
 
 namespace reradiant {
 

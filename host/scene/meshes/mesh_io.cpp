@@ -1,8 +1,8 @@
 #include "host/scene/meshes/mesh_io.h"
 
+#include "host/scene/document/load_state.h"
+#include "host/scene/document/table_reader.h"
 #include "host/scene/meshes/polygon.h"
-#include "host/scene/toml/load_state.h"
-#include "host/scene/toml/table_reader.h"
 
 #include <Eigen/Geometry>
 

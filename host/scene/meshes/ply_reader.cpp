@@ -1,10 +1,10 @@
 #include "host/scene/meshes/mesh_io.h"
 
 #include "host/base/logging.h"
+#include "host/scene/document/table_reader.h"
 #include "host/scene/meshes/ply_header.h"
 #include "host/scene/meshes/ply_values.h"
 #include "host/scene/meshes/ply_wedges.h"
-#include "host/scene/toml/table_reader.h"
 
 #include <array>
 #include <cmath>

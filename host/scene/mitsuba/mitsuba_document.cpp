@@ -1,7 +1,7 @@
 #include "host/scene/mitsuba/mitsuba_document.h"
 
 #include "host/base/plain_text.h"
-#include "host/scene/toml/load_state.h"
+#include "host/scene/document/load_state.h"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 #include "host/scene/mitsuba/mitsuba_import.h"
 
 #include "host/base/logging.h"
+#include "host/scene/document/toml_document.h"
 #include "host/scene/mitsuba/mitsuba_scene.h"
-#include "host/scene/toml/toml_document.h"
 
 #include <fmt/core.h>
 

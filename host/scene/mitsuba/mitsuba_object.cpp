@@ -1,7 +1,7 @@
 #include "host/scene/mitsuba/mitsuba_object.h"
 
 #include "host/base/logging.h"
-#include "host/scene/toml/toml_document.h"
+#include "host/scene/document/toml_document.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
+#include "host/scene/document/toml_document.h"
 #include "host/scene/mitsuba/mitsuba_scene.h"
-#include "host/scene/toml/toml_document.h"
 #include "host/spectral/spectrum/spectrum_formats.h"
 #include "host/spectral/text/wavelength_unit.h"
 #include "reradiant/colour.h"

@@ -61,14 +61,14 @@ Eigen::Matrix4d look_at(const MitsubaDocument& document, const pugi::xml_node& s
 
 Eigen::Matrix4d given_matrix(const MitsubaDocument& document, const pugi::xml_node& step) {
     const auto values = document.numbers(step, "value", 0);
-    const int size = values.size() == 16 ? 4 : 3;
-    if (values.size() != static_cast<std::size_t>(size * size))
+    const Eigen::Index size = values.size() == 16 ? 4 : 3;
+    if (std::ssize(values) != size * size)
         document.fail(step, fmt::format("the matrix has {} numbers", values.size()),
                       "give 16 or 9");
     Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-    for (int row = 0; row < size; ++row)
-        for (int column = 0; column < size; ++column)
-            matrix(row, column) = values[static_cast<std::size_t>(row * size + column)];
+    matrix.topLeftCorner(size, size) =
+        Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+            values.data(), size, size);
     if (!matrix.row(3).isApprox(Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)))
         document.fail(step, "the matrix is a projection", "its last row must be 0 0 0 1");
     return matrix;

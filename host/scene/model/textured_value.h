@@ -1,7 +1,7 @@
 #pragma once
 
-#include "host/scene/toml/load_state.h"
-#include "host/scene/toml/table_reader.h"
+#include "host/scene/document/load_state.h"
+#include "host/scene/document/table_reader.h"
 
 #include <map>
 #include <optional>

@@ -4,7 +4,7 @@
 #include "host/scene/toml/spectrum_reader.h"
 #include "host/spectral/evidence/matrix_warnings.h"
 #include "reradiant/reradiation.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include <stdexcept>
 

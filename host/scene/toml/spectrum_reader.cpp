@@ -3,8 +3,7 @@
 #include "host/scene/model/textured_value.h"
 #include "host/spectral/text/wavelength_unit.h"
 #include "reradiant/colour.h"
-#include "reradiant/reradiation_file.h"
-#include "reradiant/spectrum_file.h"
+#include "reradiant/spectral_files.h"
 
 #include <algorithm>
 #include <stdexcept>

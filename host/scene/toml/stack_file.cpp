@@ -1,10 +1,10 @@
 #include "host/scene/toml/stack_file.h"
 
+#include "host/scene/document/load_state.h"
+#include "host/scene/document/table_reader.h"
 #include "host/scene/model/textured_value.h"
-#include "host/scene/toml/load_state.h"
 #include "host/scene/toml/scene_table.h"
 #include "host/scene/toml/stack_reader.h"
-#include "host/scene/toml/table_reader.h"
 #include "reradiant/scene_file.h"
 
 namespace reradiant {

@@ -3,7 +3,7 @@
 #include "host/spectral/spectrum/quadrature.h"
 #include "host/spectral/text/number_table.h"
 #include "reradiant/paths.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -5,7 +5,7 @@
 #include "host/spectral/files/matrix_csv_header.h"
 #include "host/spectral/text/text_reader.h"
 #include "reradiant/error.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "reradiant/error.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include <optional>
 #include <string>

@@ -6,7 +6,7 @@
 #include "host/spectral/text/csv_lines.h"
 #include "host/spectral/text/text_reader.h"
 #include "host/spectral/text/wavelength_unit.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include <fmt/core.h>
 

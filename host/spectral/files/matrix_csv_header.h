@@ -3,7 +3,7 @@
 #include "host/spectral/text/csv_lines.h"
 #include "host/spectral/text/text_reader.h"
 #include "reradiant/reradiation.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include <map>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include "host/base/atomic_file.h"
 #include "host/spectral/files/matrix_formats.h"

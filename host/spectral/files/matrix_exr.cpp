@@ -5,7 +5,7 @@
 #include "host/exr/exr_input.h"
 #include "host/exr/exr_window.h"
 #include "host/spectral/spectrum/spectral_names.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDoubleAttribute.h>

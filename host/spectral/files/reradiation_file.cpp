@@ -1,4 +1,4 @@
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include "host/base/output_ending.h"
 #include "host/spectral/evidence/matrix_evidence.h"

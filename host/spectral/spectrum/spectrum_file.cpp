@@ -1,11 +1,10 @@
-#include "reradiant/spectrum_file.h"
+#include "reradiant/spectral_files.h"
 
 #include "host/base/atomic_file.h"
 #include "host/base/output_ending.h"
 #include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/spectrum/spectrum_formats.h"
 #include "host/spectral/text/text_format.h"
-#include "reradiant/reradiation_file.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reradiant/table_form.h"
+#include "reradiant/spectral_files.h"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "reradiant/table_form.h"
+#include "reradiant/spectral_files.h"
 
 #include "host/spectral/text/text_reader.h"
 #include "reradiant/error.h"

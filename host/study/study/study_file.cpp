@@ -1,6 +1,6 @@
 #include "host/study/study/study_file.h"
 
-#include "host/scene/toml/load_state.h"
+#include "host/scene/document/load_state.h"
 #include "host/scene/toml/scene_table.h"
 #include "host/study/study/sample_scene.h"
 #include "host/study/study/sweep_apply.h"

@@ -9,7 +9,7 @@
 #include "host/report/svg.h"
 #include "reradiant/error.h"
 #include "reradiant/reradiation.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
 #include "host/study/study/sweep_apply.h"
 
+#include "host/scene/document/table_reader.h"
 #include "host/scene/toml/scene_table.h"
-#include "host/scene/toml/table_reader.h"
 #include "host/study/study/sample_scene.h"
 #include "host/study/study/toml_path.h"
 #include "reradiant/colour.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/scene/toml/table_reader.h"
+#include "host/scene/document/table_reader.h"
 #include "host/study/study/study_file.h"
 
 namespace reradiant {

@@ -1,7 +1,7 @@
 #include "host/study/study/toml_path.h"
 
+#include "host/scene/document/toml_document.h"
 #include "host/scene/toml/scene_table.h"
-#include "host/scene/toml/toml_document.h"
 #include "reradiant/paths.h"
 #include "reradiant/scene.h"
 #include "reradiant/scene_file.h"

@@ -3,7 +3,7 @@
 #include "reradiant/colour_of_matrix.h"
 #include "reradiant/error.h"
 #include "reradiant/paths.h"
-#include "reradiant/reradiation_file.h"
+#include "reradiant/spectral_files.h"
 #include "reradiant/stack_model.h"
 
 #include <cstdio>

@@ -1,0 +1,110 @@
+#include "reradiant/synth.h"
+#include "host/report/json_file.h"
+#include "host/scene/model/named_files.h"
+#include "reradiant/error.h"
+#include "reradiant/reradiation.h"
+#include "reradiant/spectral_files.h"
+#include "tools/program/command.h"
+#include "tools/program/outputs.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+namespace reradiant {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct SynthOptions {
+    fs::path recipe, output, truth;
+};
+
+/// Errors of meaning have no place of their own: they are placed at the recipe.
+SynthResult synthesise_file(const SynthRecipe& recipe, const fs::path& file, unsigned seed) {
+    try {
+        return synthesise(recipe, seed);
+    } catch (const std::invalid_argument& error) {
+        throw_input_error({file.string()}, error.what(), "change the recipe's grids or bands");
+    }
+}
+
+Json describe(const SynthOptions& options, const SynthRecipe& recipe, const SynthResult& result,
+              const ReradiationMatrix& truth, unsigned seed) {
+    const std::vector<double> photons = column_balance(truth).photons;
+    Json yields = Json::array();
+    for (const Fluorophore& fluorophore : recipe.fluorophores)
+        yields.push_back(fluorophore.quantum_yield);
+    Json json = {{"data", options.output.string()},
+                 {"truth", options.truth.string()},
+                 {"seed", seed},
+                 {"emission_bands", recipe.emission.count},
+                 {"excitation_bands", recipe.excitation.count},
+                 {"geometries", recipe.geometries.size()},
+                 {"entries", result.data.measured_count()},
+                 {"peak", result.peak},
+                 {"noise_rms", result.noise_rms},
+                 {"noise_rms_of_peak", result.noise_rms / result.peak},
+                 {"quantum_yield", yields},
+                 {"largest_photon_column_sum", *std::max_element(photons.begin(), photons.end())}};
+    return json;
+}
+
+int run_synth(const SynthOptions& options, const CommonOptions& common) {
+    const std::vector<NamedOutput> outputs = {
+        {"-o",
+         options.output,
+         {".csv"},
+         true,
+         "`reradiant convert` makes other formats of a bare matrix"},
+        {"--truth", options.truth, {".csv", ".exr", ".bfc"}, true}};
+    check_outputs(common, outputs, {options.recipe});
+    const SynthRecipe recipe = read_synth_recipe(options.recipe);
+    check_outputs(common, outputs, named_files());
+    const SynthResult result = synthesise_file(recipe, options.recipe, common.seed);
+    const ReradiationMatrix truth = synth_truth(recipe);
+    write_bispectral_data(options.output, result.data);
+    if (!options.truth.empty())
+        write_reradiation(options.truth, truth);
+    write_json(common.json, describe(options, recipe, result, truth, common.seed));
+    if (common.quiet)
+        return 0;
+    fmt::print("{}: {} entries, {}\n", options.output.string(), result.data.measured_count(),
+               recipe.geometries.empty()
+                   ? std::string("the bare matrix")
+                   : fmt::format("{} geometries, {} layers", recipe.geometries.size(),
+                                 recipe.stack.layers.size()));
+    fmt::print("largest fluorescent entry {:.6g}; noise {:.3g} rms off the diagonal, {:.3g} % of "
+               "it\n",
+               result.peak, result.noise_rms, 100.0 * result.noise_rms / result.peak);
+    return 0;
+}
+
+} // namespace
+
+void add_synth_command(CLI::App& program, CommandContext& context) {
+    auto options = std::make_shared<SynthOptions>();
+    CLI::App* const command = program.add_subcommand(
+        "synth", "Synthetic bispectral data of known fluorophores, with an instrument's noise");
+    command->add_option("RECIPE", options->recipe, "TOML file, see tools/examples/synth-*.toml")
+        ->required();
+    command
+        ->add_option("-o,--output", options->output,
+                     "CSV to write: a measured re-radiation matrix, or with [geometry] what "
+                     "`measure` writes, with standard errors")
+        ->required();
+    command->add_option("--truth", options->truth,
+                        "write the substrate's matrix without noise (.csv, .exr, .bfc)");
+    command->footer("Examples:\n"
+                    "  reradiant synth tools/examples/synth-orange.toml -o ~/orange.csv --seed 7\n"
+                    "  reradiant synth tools/examples/synth-varnished.toml -o ~/data.csv "
+                    "--truth ~/truth.csv");
+    command->callback(
+        [options, &context] { context.exit_code = run_synth(*options, context.common); });
+}
+
+} // namespace reradiant
