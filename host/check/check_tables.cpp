@@ -121,6 +121,16 @@ void fill_choice(CheckTables& tables) {
                     : 0.15f * static_cast<float>(i + 1) + 0.001f * static_cast<float>(node);
 }
 
+/// Ratios that change along all three axes, the same for both orders of the directions.
+void fill_shape(CheckTables& tables) {
+    constexpr std::size_t cosines = FACET_SHAPE_COSINES, slopes = FACET_SHAPE_SLOPES;
+    for (std::size_t i = 0; i < cosines; ++i)
+        for (std::size_t o = 0; o < cosines; ++o)
+            for (std::size_t s = 0; s < slopes; ++s)
+                tables.shape[(i * cosines + o) * slopes + s] =
+                    0.02f + 0.002f * static_cast<float>(i * o) + 0.001f * static_cast<float>(s * s);
+}
+
 void fill_lanes(CheckTables& tables) {
     for (int i = 0; i < 2 * CHECK_RANK * LANES; ++i)
         tables.factors[i] = 0.02f + 0.01f * static_cast<float>(std::sin(0.37 * i));
@@ -139,13 +149,14 @@ CheckTables check_tables() {
     tables.material = material();
     const auto stack = layers();
     std::copy(stack.begin(), stack.end(), tables.layers);
-    tables.lobes[0] = {0.3f, 1, CHECK_LAYERS - 1, NO_INDEX};
-    tables.lobes[1] = {0.6f, 0, 1, 0}; // a slab of anisotropy 0.6 beneath the coat
+    tables.lobes[0] = {0.3f, 1, CHECK_LAYERS - 1, NO_INDEX, NO_INDEX};
+    tables.lobes[1] = {0.6f, 0, 1, 0, NO_INDEX}; // a slab of anisotropy 0.6 beneath the coat
     fill_textures(tables);
     fill_lights(tables);
     fill_camera(tables.camera);
     fill_environment(tables);
     fill_choice(tables);
+    fill_shape(tables);
     fill_lanes(tables);
     return tables;
 }

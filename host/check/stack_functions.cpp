@@ -64,6 +64,11 @@ std::vector<CheckedFunction> component_functions() {
                              (Arguments{direction(), direction()}), 1, lobe,
                              const LayerStackView stack = CHECK_STACK;
                              out[0] = layer_stack_top(stack, CHECK_VECTOR(0), CHECK_VECTOR(3))),
+            CHECKED_FUNCTION("facet_shape_value", "kernels/scatter/facet_shape.h",
+                             (Arguments{direction(), direction()}), 1,
+                             (Accuracy{5e-6, 1e-2, "places among nodes, by logarithms"}),
+                             out[0] = facet_shape_value(tables->shape, REAL(0.2), CHECK_VECTOR(0),
+                                                        CHECK_VECTOR(3))),
     };
 }
 

@@ -9,10 +9,22 @@
 
 namespace reradiant {
 
-/// The shape D G2 of a rough surface's lobe, over the half vector in air.
+/// A rough interface that the light of a deeper lobe passes on both ways.
+struct LobePassage {
+    double alpha, ior_above, ior_below;
+};
+
+/// The shape D G2 of a rough surface's lobe, over the half vector in air. Its width is alpha for
+/// facets in air; for those of an interface deeper in a stack it follows from their own alpha, the
+/// medium above them and the passages, as kernels/scatter/lobe_width.h says.
 struct LobeShape {
     Distribution distribution = Distribution::Ggx;
     double alpha = 0.0;
+    /// Ratio that the lobe is multiplied by (kernels/scatter/facet_shape.h); null: 1.
+    std::shared_ptr<const std::vector<float>> table = nullptr;
+    double ior = 0.0; ///< of the medium above a deeper interface; 0: facets in air
+    std::vector<LobePassage> passages{};
+    std::size_t element = 0; ///< of the stack, that reflects
 };
 
 /// A `StackModel` is what a closed model says of a stack at one wavelength, in double precision, by
@@ -27,11 +39,14 @@ struct LobeShape {
 ///   delta of weight `specular_delta(c)` towards the mirror direction
 /// + rough top interface: F(wi.h) D(h) G2 / (4 ci co), single scattering
 /// (kernels/scatter/microfacet.h)
-/// + sum over deeper rough lobes l: a_l(ci) a_l(co) D_l(h) G2_l / (4 ci co), h = half vector in
-///   air (adding; under weidlich-wilkie the lobe itself is that of the directions refracted down)
-/// + residual(ci) residual(co) / (pi residual_average): what is left of the specular flux
-///   (multiple scattering between facets and layers, and what slabs scatter back), reciprocal
-///   (Kelemen-Szirmay-Kalos 2001).
+/// + sum over further rough lobes l: a_l(ci) a_l(co) D_l(h) G2_l / (4 ci co), h = half vector in
+///   air (adding; under weidlich-wilkie the lobe itself is that of the directions refracted down).
+///   Under adding the first of them, times a tabulated ratio, is the light that the top interface's
+///   facets scatter more than once (ggx and beckmann, `multiple`); the others are deeper
+///   interfaces'
+/// + residual(ci) residual(co) / (pi residual_average): what is left of the specular flux (light
+///   between the facets of blinn and of deeper interfaces, between layers, and what slabs scatter
+///   back), reciprocal (Kelemen-Szirmay-Kalos 2001).
 /// The integral over co of everything equals `specular_albedo(ci)`.
 class StackModel {
 public:
@@ -58,7 +73,7 @@ public:
     virtual double specular_delta(double cos_theta) const = 0;
     /// True when the top interface is rough (alpha and distribution of the first layer).
     virtual bool has_top_lobe() const = 0;
-    /// Shapes of the lobes beneath the top one.
+    /// Shapes of the lobes besides the top one.
     virtual const std::vector<LobeShape>& deeper_lobes() const = 0;
     /// Amplitude a >= 0 of a deeper lobe. Adding tabulates it so that the lobe carries the flux
     /// that its interface sends back; under weidlich-wilkie it is what absorption and films above

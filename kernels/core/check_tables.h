@@ -5,6 +5,7 @@
 
 #include "kernels/core/features.h"
 #include "kernels/core/shared.h"
+#include "kernels/scatter/facet_shape.h"
 
 /// Three of a checked function's arguments, or of its results, as a vector.
 #define CHECK_VECTOR(k) vec3(in[k], in[(k) + 1], in[(k) + 2])
@@ -39,6 +40,7 @@ typedef struct {
     CameraRecord camera;
     EnvironmentRecord environment; ///< offsets into `image`
     shared_float choice[TABLE_NODES * CHECK_CHOICES];
+    shared_float shape[FACET_SHAPE_SIZE];
     shared_float image[5 * CHECK_IMAGE_TEXELS + CHECK_IMAGE_HEIGHT];
     shared_float factors[2 * CHECK_RANK * LANES];
     shared_float dense[LANES * LANES];

@@ -146,15 +146,16 @@ typedef struct {
 } LayerRecord;
 ASSERT_SIZE(LayerRecord, 24);
 
-/// A rough lobe of anything below the first interface, in air half-vector space, or what a slab
-/// scatters.
+/// A rough lobe besides that of the first interface's single facets, in air half-vector space, or
+/// what a slab scatters.
 typedef struct {
-    shared_float alpha; ///< a slab's lobe: anisotropy g
+    shared_float alpha; ///< of the facets; a slab's lobe: anisotropy g
     shared_uint distribution;
     shared_uint layer; ///< index within the material's layers; a slab's: of what lies above it
     shared_uint slab;  ///< [2][phase][lane]: optical depth and albedo; NO_INDEX: a rough lobe
+    shared_uint shape; ///< table of facet_shape.h that it is multiplied by; NO_INDEX: none
 } LobeRecord;
-ASSERT_SIZE(LobeRecord, 16);
+ASSERT_SIZE(LobeRecord, 20);
 
 /// MaterialRecord::weidlich_wilkie. Per lane: some interface's IOR depends on wavelength.
 #define MODEL_A 1u

@@ -11,7 +11,9 @@
 #include "kernels/core/portable.h"
 #include "kernels/core/sampling.h"
 #include "kernels/core/shared.h"
+#include "kernels/scatter/facet_shape.h"
 #include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/lobe_width.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
 #include "kernels/stack/model_a.h"
@@ -36,7 +38,7 @@ typedef struct {
     MaterialRecord record;
     GLOBAL_CONST LayerRecord* layers;
     GLOBAL_CONST LobeRecord* lobes;
-    GLOBAL_CONST shared_float* choice;
+    GLOBAL_CONST shared_float* tables; ///< of all materials
 } LayerStackView;
 
 DEVICE_FUNCTION LayerChoice layer_stack_choice(LayerStackView stack, real cos_o) {
@@ -44,7 +46,7 @@ DEVICE_FUNCTION LayerChoice layer_stack_choice(LayerStackView stack, real cos_o)
     uint node = (uint)position;
     node = node > TABLE_NODES - 2u ? TABLE_NODES - 2u : node;
     const real t = position - (real)node;
-    GLOBAL_CONST shared_float* row = stack.choice + node * (CHOICES + 1u);
+    GLOBAL_CONST shared_float* row = stack.tables + stack.record.choice + node * (CHOICES + 1u);
     LayerChoice choice;
     for (uint i = 0u; i < CHOICES; ++i)
         choice.cumulative[i] = row[i] + t * (row[i + CHOICES + 1u] - row[i]);
@@ -56,6 +58,32 @@ DEVICE_FUNCTION real layer_stack_probability(const LayerChoice* choice, uint com
     return component == 0u ? choice->cumulative[0]
                            : choice->cumulative[component] - choice->cumulative[component - 1u];
 }
+
+#if FEATURE_DEEPER_LOBES
+/// Width of a further lobe between two directions in air: its own, or under adding that of a deeper
+/// interface seen through the rough ones above it.
+DEVICE_FUNCTION real layer_stack_lobe_width(LayerStackView stack, LobeRecord lobe, real cos_i,
+                                            real cos_o) {
+    const real sin2_i = (REAL(1.0) - cos_i) * (REAL(1.0) + cos_i);
+    const real sin2_o = (REAL(1.0) - cos_o) * (REAL(1.0) + cos_o);
+    const int distribution = (int)lobe.distribution;
+    real ior = REAL(1.0), terms = REAL(0.0);
+    if (stack.record.weidlich_wilkie || lobe.shape != NO_INDEX)
+        return lobe.alpha;
+    for (uint l = 0u; l < lobe.layer; ++l) {
+        const LayerRecord above = stack.layers[l];
+        const real below = ior * above.eta;
+        if (above.alpha > 0.0f)
+            terms +=
+                lobe_width_term(distribution, lobe_width_passage(above.alpha, ior, below, sin2_i)) +
+                lobe_width_term(distribution, lobe_width_passage(above.alpha, ior, below, sin2_o));
+        ior = below;
+    }
+    terms += lobe_width_term(distribution, lobe.alpha * (lobe_width_normal(ior, sin2_i) +
+                                                         lobe_width_normal(ior, sin2_o)));
+    return lobe_width(distribution, terms, cos_i, cos_o);
+}
+#endif
 
 DEVICE_FUNCTION real layer_stack_lobe_pdf(int distribution, real alpha, Vec3 wo, Vec3 wi) {
     const Vec3 h = vec3_normalise(vec3_add(wo, wi));
@@ -79,8 +107,9 @@ DEVICE_FUNCTION real layer_stack_pdf(LayerStackView stack, const LayerChoice* ch
     for (uint l = 0u; l < stack.record.lobe_count; ++l)
         if (stack.lobes[l].slab == NO_INDEX)
             pdf += layer_stack_probability(choice, CHOICE_LOBE + l) *
-                   layer_stack_lobe_pdf((int)stack.lobes[l].distribution, stack.lobes[l].alpha, wo,
-                                        wi);
+                   layer_stack_lobe_pdf((int)stack.lobes[l].distribution,
+                                        layer_stack_lobe_width(stack, stack.lobes[l], wo.z, wo.z),
+                                        wo, wi);
 #endif
     return pdf;
 }
@@ -112,13 +141,14 @@ DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice*
 #if FEATURE_DEEPER_LOBES
     for (uint l = 0u; l < stack.record.lobe_count; ++l)
         if (u0 < choice->cumulative[CHOICE_LOBE + l])
-            return layer_stack_sample_lobe((int)stack.lobes[l].distribution, stack.lobes[l].alpha,
-                                           wo, u1, u2);
+            return layer_stack_sample_lobe(
+                (int)stack.lobes[l].distribution,
+                layer_stack_lobe_width(stack, stack.lobes[l], wo.z, wo.z), wo, u1, u2);
 #endif
     return sampling_cosine(u1, u2);
 }
 
-/// Scalar value of a deeper lobe, to be multiplied by its two amplitudes (and by what model A
+/// Scalar value of a further lobe, to be multiplied by its two amplitudes (and by what model A
 /// evaluates per lane). 1/sr, no cosine.
 #if FEATURE_DEEPER_LOBES
 DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi, Vec3 wo) {
@@ -129,8 +159,12 @@ DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi
         return model_a_nested_lobe(stack.layers, stack.lobes[lobe], 0,
                                    model_a_facet(stack.layers, stack.lobes[lobe].layer, 0, wi, wo));
 #endif
-    return microfacet_reflection((int)stack.lobes[lobe].distribution, stack.lobes[lobe].alpha, wi,
-                                 wo);
+    const LobeRecord record = stack.lobes[lobe];
+    const real value = microfacet_reflection(
+        (int)record.distribution, layer_stack_lobe_width(stack, record, wi.z, wo.z), wi, wo);
+    return record.shape == NO_INDEX
+               ? value
+               : value * facet_shape_value(stack.tables + record.shape, record.alpha, wi, wo);
 }
 #endif
 

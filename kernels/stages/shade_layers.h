@@ -13,7 +13,7 @@ LayerStackView layer_stack_of(const ShadeScene* scene, uint material) {
     stack.record = scene->materials[material];
     stack.layers = scene->layers + stack.record.first_layer;
     stack.lobes = scene->lobes + stack.record.first_lobe;
-    stack.choice = scene->tables + stack.record.choice;
+    stack.tables = scene->tables;
     return stack;
 }
 

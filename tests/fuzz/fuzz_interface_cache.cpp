@@ -1,4 +1,5 @@
 #include "host/layers/rough/interface_file.h"
+#include "host/layers/rough/interface_operator.h"
 #include "tests/fuzz/fuzz_input.h"
 
 #include <algorithm>
@@ -13,20 +14,16 @@ using namespace reradiant;
 
 namespace {
 
-constexpr long eta_1e4 = 15000;
+/// As many as an operator has.
+constexpr std::size_t count = 4 * interface_cells * interface_cells + interface_cells;
 
 struct Whole {
-    RoughInterface interface;
+    InterfaceKey key{InterfaceNumbers::Operator, {.eta = 1.5, .alpha = 0.25}, 15000};
     std::string bytes;
 
     Whole() {
-        interface.eta = 1.5;
-        interface.alpha = 0.25;
-        InterfaceOperator op = empty_interface_operator(interface);
-        op.exchange.setConstant(2 * interface_cells, 2 * interface_cells, 0.5);
-        op.first_lobe.setConstant(interface_cells, 0.25);
         const auto file = fuzz::folder() / "whole.bin";
-        write_interface_file(file, op, eta_1e4);
+        write_interface_file(file, key, std::vector<double>(count, 0.5));
         std::ifstream stream(file, std::ios::binary);
         bytes.assign(std::istreambuf_iterator<char>(stream), {});
     }
@@ -49,7 +46,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
         patched.resize(
             std::min<std::size_t>(number_at(bytes) % (2 * patched.size()), patched.size()));
     const auto file = fuzz::put("interface.bin", patched);
-    const bool read = read_interface_file(file, whole.interface, eta_1e4).has_value();
+    const bool read = read_interface_file(file, whole.key, count).has_value();
     if (read != (patched == whole.bytes))
         fuzz::fail(read ? "a damaged file was taken" : "a whole file was refused");
     return 0;

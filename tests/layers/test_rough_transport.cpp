@@ -1,3 +1,4 @@
+#include "host/layers/rough/specular_lobes.h"
 #include "kernels/scatter/fresnel.h"
 #include "kernels/scatter/microfacet.h"
 #include "tests/layers/layer_values.h"
@@ -158,8 +159,7 @@ TEST(RoughTransport, SpecularPartsAddUpToTheSpecularAlbedo) {
                         const int index = static_cast<int>(l);
                         lobes += weight * t->lobe_amplitude(index, c) *
                                  t->lobe_amplitude(index, co) *
-                                 kernels::microfacet_reflection(MICROFACET_GGX,
-                                                                t->deeper_lobes()[l].alpha, wi, wo);
+                                 lobe_value(t->deeper_lobes()[l], wi, wo);
                     }
                 }
             }

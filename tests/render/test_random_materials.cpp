@@ -37,7 +37,7 @@ __kernel void triple(__global const float* in, __global float* out, uint count,
     out += 6u * i;
     const MaterialRecord record = materials[i / directions];
     const LayerStackView stack = {record, layers + record.first_layer, lobes + record.first_lobe,
-                                  tables + record.choice};
+                                  tables};
     const Vec3 wo = vec3(in[0], in[1], in[2]), wi = vec3(in[3], in[4], in[5]);
     const LayerChoice choice = layer_stack_choice(stack, wo.z);
     out[0] = layer_stack_pdf(stack, &choice, wo, wi);

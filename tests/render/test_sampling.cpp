@@ -33,8 +33,7 @@ public:
             plan_wavelengths(scene, grid_from_range(450, 650, 100), options);
         append_material(material, plan_material(material, {model, ""}, plan), plan, LOBES, tables_);
         const MaterialRecord& record = tables_.materials.front();
-        view_ = {record, tables_.layers.data(), tables_.lobes.data(),
-                 tables_.tables.data() + record.choice};
+        view_ = {record, tables_.layers.data(), tables_.lobes.data(), tables_.tables.data()};
     }
     const LayerStackView& view() const { return view_; }
 

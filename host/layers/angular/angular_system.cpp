@@ -62,8 +62,11 @@ void AngularSystem::add_interface(const SurfaceValues& interface) {
     }
     rough.upper.ior = above;
     rough.lower.ior = below;
-    if (scatterers_.empty() && denser)
+    if (scatterers_.empty() && denser) {
         first_lobe_ = op->first_lobe;
+        between_facets_ =
+            (shares.topLeftCorner(n, n).colwise().sum().transpose() - first_lobe_).cwiseMax(0.0);
+    }
     scatterers_.push_back(std::move(rough));
 }
 

@@ -48,6 +48,9 @@ public:
     /// Reflection lobe of a rough interface that is the first scatterer, mean over each cell of its
     /// upper side. Only known for one towards a denser medium, else empty.
     const Eigen::VectorXd& first_lobe() const { return first_lobe_; }
+    /// Share of the light that this interface sends back after more than one event at its facets,
+    /// by the same cells; empty likewise.
+    const Eigen::VectorXd& between_facets() const { return between_facets_; }
 
 private:
     /// A rough interface or a slab between its neighbours; `response`(i, j): share of cell j's flux
@@ -69,7 +72,7 @@ private:
     std::vector<CellPile> between_;
     SmoothStack top_media_, bottom_media_;
     AirPile air_;
-    Eigen::VectorXd first_lobe_;
+    Eigen::VectorXd first_lobe_, between_facets_;
 };
 
 } // namespace reradiant

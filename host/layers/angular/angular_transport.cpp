@@ -2,6 +2,7 @@
 
 #include "host/layers/angular/angular_system.h"
 #include "host/layers/models/adding.h"
+#include "host/layers/rough/facet_shape.h"
 #include "host/layers/rough/interface_walk.h"
 #include "host/layers/rough/specular_lobes.h"
 #include "host/layers/stack/quadrature.h"
@@ -122,6 +123,12 @@ public:
         return std::max(rest, 0.0);
     }
     double residual_average() const override { return residual_average_; }
+    std::vector<double> lobe_shares(double c) const override {
+        std::vector<double> shares{top_lobe_albedo(c)};
+        for (const LobeTables& table : tables_)
+            shares.push_back(table.albedo(c));
+        return shares;
+    }
     double lost(double c) const override { return shares(c).lost; }
 
 private:
@@ -203,6 +210,7 @@ private:
         std::size_t k = 0;
         if (top_rough_) {
             set_top_lobe();
+            add_facet_lobe();
             ++k;
             if (k < count)
                 above = cut_albedo(k);
@@ -223,6 +231,21 @@ private:
             top_lobe_ = fit_->coefficients(system_.first_lobe());
         else
             top_lobe_ = fit_->coefficients(inverted_first_lobe());
+    }
+
+    /// Adds the lobe of the light that the top interface's facets scatter more than once; light
+    /// that has no shape of its own is left to the residual.
+    void add_facet_lobe() {
+        const SurfaceValues& top = std::get<SurfaceValues>(stack_.front());
+        if (system_.between_facets().size() == 0)
+            return;
+        LobeShape lobe{Distribution::Ggx, top.alpha,
+                       facet_shape({top.ior_below, top.distribution, top.alpha, top.scattering})};
+        if (!lobe.table)
+            return;
+        const Eigen::VectorXd albedo = fit_->coefficients(system_.between_facets());
+        lobes_.push_back(lobe);
+        tables_.push_back(fit_lobe(lobe, [&](double c) { return fit_->evaluate(albedo, c); }));
     }
 
     /// Albedo of the top lobe towards a thinner medium, by quadrature over facets.
@@ -268,7 +291,8 @@ private:
     }
 
     void add_lobe(std::size_t interface, const Eigen::VectorXd& coefficients) {
-        const LobeShape lobe{distribution_at(interface), effective_lobe_width(stack_, interface)};
+        LobeShape lobe = deeper_lobe(stack_, interface);
+        lobe.distribution = distribution_at(interface);
         lobes_.push_back(lobe);
         tables_.push_back(fit_lobe(lobe, [&](double c) {
             const double in = smooth_response(lobe_top_, 1.0, c).transmission;

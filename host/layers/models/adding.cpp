@@ -1,6 +1,7 @@
 #include "host/layers/models/adding.h"
 
 #include "host/layers/angular/angular_transport.h"
+#include "host/layers/rough/specular_lobes.h"
 #include "host/layers/smooth/smooth_transport.h"
 #include "host/layers/stack/directions.h"
 #include "host/layers/stack/stack_check.h"
@@ -36,8 +37,7 @@ double AddingModel::specular(const Vec3& wi, const Vec3& wo) const {
     for (std::size_t l = 0; l < shapes.size(); ++l) {
         const int index = static_cast<int>(l);
         sum += lobe_amplitude(index, wi.z) * lobe_amplitude(index, wo.z) *
-               kernels::microfacet_reflection(kernel_distribution(shapes[l].distribution),
-                                              shapes[l].alpha, wi, wo);
+               lobe_value(shapes[l], wi, wo);
     }
     if (residual_average() > 0.0)
         sum += residual(wi.z) * residual(wo.z) * std::numbers::inv_pi / residual_average();
@@ -65,20 +65,6 @@ std::vector<LobeShape> AddingModel::lobes() const {
     if (has_top_lobe())
         all.push_back({top_.distribution, top_.alpha});
     return all;
-}
-
-std::vector<double> AddingModel::lobe_shares(double c) const {
-    std::vector<double> shares{has_top_lobe() ? 1.0 : 0.0};
-    const auto lobes = static_cast<int>(deeper_lobes().size());
-    for (int l = 0; l < lobes; ++l)
-        shares.push_back(lobe_amplitude(l, c) * lobe_amplitude(l, c));
-    double sum = 0.0;
-    for (const double share : shares)
-        sum += share;
-    const double all = std::max(0.0, specular_albedo(c) - specular_delta(c) - residual(c));
-    for (double& share : shares)
-        share *= sum > 0.0 ? all / sum : 0.0;
-    return shares;
 }
 
 double AddingModel::diffuse_scale() const {

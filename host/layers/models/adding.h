@@ -20,9 +20,6 @@ public:
                              const kernels::Vec3& wo) const override;
     std::optional<OrenNayarWeights> whole_way_out(double sigma, double cos_i) const override;
     std::vector<LobeShape> lobes() const override;
-    /// Returns shares that go with the squares of the amplitudes and add up to what neither delta
-    /// nor residual reflects.
-    std::vector<double> lobe_shares(double cos_theta) const override;
     double lowest_ior() const override { return lowest_ior_; }
     double diffuse_scale() const override;
 

@@ -1,6 +1,7 @@
 #include "host/layers/models/layered_bsdf.h"
 
 #include "host/layers/models/effective_matrix.h"
+#include "host/layers/rough/specular_lobes.h"
 #include "host/layers/stack/directions.h"
 #include "host/layers/stack/quadrature.h"
 #include "kernels/scatter/oren_nayar.h"
@@ -221,7 +222,8 @@ LayeredBsdf::Sample LayeredBsdf::sample(const Vec3& w, const std::array<double, 
         bound += chosen.lobe;
         if (random[0] < bound) {
             const Vec3 other = kernels::layer_stack_sample_lobe(
-                kernel_distribution(lobe.distribution), lobe.alpha, w, random[1], random[2]);
+                kernel_distribution(lobe.distribution), sampling_width(lobe, w.z), w, random[1],
+                random[2]);
             return {other, pdf(w, other), false};
         }
     }
@@ -236,7 +238,7 @@ double LayeredBsdf::pdf(const Vec3& w, const Vec3& other) const {
     double sum = chosen.cosine * other.z * std::numbers::inv_pi;
     for (const LobeShape& lobe : lobes_) {
         sum += chosen.lobe * kernels::layer_stack_lobe_pdf(kernel_distribution(lobe.distribution),
-                                                           lobe.alpha, w, other);
+                                                           sampling_width(lobe, w.z), w, other);
     }
     return sum;
 }

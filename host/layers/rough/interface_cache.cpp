@@ -1,13 +1,12 @@
 #include "host/layers/rough/interface_operator.h"
 
-#include "host/base/logging.h"
 #include "host/layers/rough/interface_file.h"
 
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <tuple>
+#include <vector>
 
 namespace reradiant {
 
@@ -21,23 +20,31 @@ OperatorKey key_of(const RoughInterface& interface, long eta_1e4) {
             static_cast<int>(interface.scattering), interface.alpha};
 }
 
-/// Writes an operator to the disk cache. A cache that cannot be written is no error: it only costs
-/// time.
-void keep(const InterfaceOperator& op, const std::filesystem::path& file, long eta_1e4) {
-    try {
-        write_interface_file(file, op, eta_1e4);
-    } catch (const std::exception& error) {
-        logging::debug("interface cache not written: {}", error.what());
-    }
+constexpr Eigen::Index side = 2 * interface_cells;
+
+std::vector<double> numbers_of(const InterfaceOperator& op) {
+    std::vector<double> numbers(op.exchange.data(), op.exchange.data() + op.exchange.size());
+    numbers.insert(numbers.end(), op.first_lobe.data(),
+                   op.first_lobe.data() + op.first_lobe.size());
+    return numbers;
+}
+
+InterfaceOperator operator_of(const RoughInterface& interface, const std::vector<double>& numbers) {
+    InterfaceOperator op = empty_interface_operator(interface);
+    op.exchange = Eigen::Map<const Eigen::MatrixXd>(numbers.data(), side, side);
+    op.first_lobe =
+        Eigen::Map<const Eigen::VectorXd>(numbers.data() + side * side, interface_cells);
+    return op;
 }
 
 std::shared_ptr<const InterfaceOperator> exact_operator(RoughInterface interface, long eta_1e4) {
     interface.eta = static_cast<double>(eta_1e4) * 1e-4;
-    const std::filesystem::path file = interface_file(interface, eta_1e4);
-    if (std::optional<InterfaceOperator> stored = read_interface_file(file, interface, eta_1e4))
-        return std::make_shared<InterfaceOperator>(std::move(*stored));
+    const InterfaceKey key{InterfaceNumbers::Operator, interface, eta_1e4};
+    constexpr std::size_t count = side * side + interface_cells;
+    if (const auto stored = read_interface_file(key.file(), key, count))
+        return std::make_shared<InterfaceOperator>(operator_of(interface, *stored));
     auto op = std::make_shared<InterfaceOperator>(compute_interface_operator(interface));
-    keep(*op, file, eta_1e4);
+    keep_interface_numbers(key, numbers_of(*op));
     return op;
 }
 

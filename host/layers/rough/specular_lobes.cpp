@@ -1,6 +1,8 @@
 #include "host/layers/rough/specular_lobes.h"
 
 #include "host/layers/rough/interface_walk.h"
+#include "kernels/scatter/facet_shape.h"
+#include "kernels/scatter/lobe_width.h"
 #include "kernels/scatter/microfacet.h"
 
 #include <Eigen/Core>
@@ -9,6 +11,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <tuple>
 
 namespace reradiant {
 
@@ -36,35 +39,50 @@ namespace {
 
 /// Facets a node: enough for an amplitude, whose shortfall goes to the residual. Generator as in
 /// L'Ecuyer and Lemieux 2000, table 1.
-constexpr LatticeRule lobe_rule{1021, 76};
+constexpr LatticeRule lobe_rule{1021, 76}, deeper_rule{4093, 1516};
 
-/// Share of a unit lobe's flux without Fresnel, one sample of the visible facets: G2 / G1.
-double lobe_share(int distribution, double alpha, const Vec3& wi, const Vec3& wo, const Vec3& h) {
-    if (distribution == MICROFACET_BLINN) {
-        return kernels::microfacet_g2(distribution, alpha, wi, wo, h) * kernels::vec3_dot(wi, h) /
-               (wi.z * h.z);
-    }
-    const double own = wi.z + kernels::microfacet_lambda_cos(distribution, alpha, wi);
-    return own * wo.z * kernels::microfacet_g2_over_cosines(distribution, alpha, wi, wo, h);
+double table_ratio(const LobeShape& lobe, const Vec3& wi, const Vec3& wo) {
+    return lobe.table ? kernels::facet_shape_value(lobe.table->data(), lobe.alpha, wi, wo) : 1.0;
+}
+
+/// Share of a unit lobe's flux without Fresnel, one sample of the visible facets of a width: G2 /
+/// G1 where that is the lobe's own.
+double lobe_share(const LobeShape& lobe, double sampled, const Vec3& wi, const Vec3& wo,
+                  const Vec3& h) {
+    const int distribution = kernel_distribution(lobe.distribution);
+    const double width = lobe_width(lobe, wi.z, wo.z);
+    const double density = width == sampled ? 1.0
+                                            : kernels::microfacet_d(distribution, width, h) /
+                                                  kernels::microfacet_d(distribution, sampled, h);
+    const double g2 = kernels::microfacet_g2_over_cosines(distribution, width, wi, wo, h);
+    if (distribution == MICROFACET_BLINN)
+        return density * g2 * wo.z * kernels::vec3_dot(wi, h) / h.z;
+    const double own = wi.z + kernels::microfacet_lambda_cos(distribution, sampled, wi);
+    return density * own * wo.z * g2;
 }
 
 /// K(i, o): albedo of the lobe at node i that comes from amplitudes at node o.
 Eigen::MatrixXd spread_matrix(const LobeShape& lobe) {
     const int distribution = kernel_distribution(lobe.distribution);
-    const WalkStream stream(lobe_rule, 0);
+    const LatticeRule rule = lobe.ior > 0.0 ? deeper_rule : lobe_rule;
+    const WalkStream stream(rule, 0);
     Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(CosineTable::nodes, CosineTable::nodes);
     for (int node = 0; node < CosineTable::nodes; ++node) {
         const double c = std::max(CosineTable::node_cosine(node), 1e-6);
         const Vec3 wi = kernels::vec3(std::sqrt((1.0 - c) * (1.0 + c)), 0.0, c);
-        for (unsigned sample = 0; sample < lobe_rule.count; ++sample) {
+        // wider than the lobe, whose width changes with the other direction
+        const double width = sampling_width(lobe, c);
+        const double sampled = lobe.ior > 0.0 ? std::min(1.3 * width, 1.0) : width;
+        for (unsigned sample = 0; sample < rule.count; ++sample) {
             WalkNumbers numbers(stream, sample);
             const double u1 = numbers.next(), u2 = numbers.next();
-            const Vec3 h = kernels::microfacet_sample(distribution, lobe.alpha, wi, u1, u2);
+            const Vec3 h = kernels::microfacet_sample(distribution, sampled, wi, u1, u2);
             const double cos_h = kernels::vec3_dot(wi, h);
             const Vec3 wo = kernels::vec3_sub(kernels::vec3_scale(h, 2.0 * cos_h), wi);
             if (cos_h <= 0.0 || wo.z <= 0.0)
                 continue;
-            const double share = lobe_share(distribution, lobe.alpha, wi, wo, h) / lobe_rule.count;
+            const double share =
+                lobe_share(lobe, sampled, wi, wo, h) * table_ratio(lobe, wi, wo) / rule.count;
             const double x = std::sqrt(std::min(wo.z, 1.0)) * (CosineTable::nodes - 1);
             const int left = std::min(static_cast<int>(x), CosineTable::nodes - 2);
             spread(node, left) += share * (left + 1 - x);
@@ -74,12 +92,19 @@ Eigen::MatrixXd spread_matrix(const LobeShape& lobe) {
     return spread;
 }
 
+/// What spreads depend on.
+auto key_of(const LobeShape& lobe) {
+    std::vector<double> numbers{lobe.alpha, lobe.ior};
+    for (const LobePassage& p : lobe.passages)
+        numbers.insert(numbers.end(), {p.alpha, p.ior_above, p.ior_below});
+    return std::tuple{lobe.distribution, std::move(numbers), lobe.table};
+}
+
 std::shared_ptr<const Eigen::MatrixXd> spread_of(const LobeShape& lobe) {
     static std::mutex mutex;
-    static std::map<std::pair<int, double>, std::shared_ptr<const Eigen::MatrixXd>> known;
-    const std::pair<int, double> key{static_cast<int>(lobe.distribution), lobe.alpha};
+    static std::map<decltype(key_of(lobe)), std::shared_ptr<const Eigen::MatrixXd>> known;
     const std::scoped_lock lock(mutex);
-    auto& spread = known[key];
+    auto& spread = known[key_of(lobe)];
     if (!spread)
         spread = std::make_shared<Eigen::MatrixXd>(spread_matrix(lobe));
     return spread;
@@ -90,6 +115,27 @@ std::vector<double> as_vector(const Eigen::VectorXd& v) {
 }
 
 } // namespace
+
+double lobe_width(const LobeShape& lobe, double cos_i, double cos_o) {
+    if (lobe.ior == 0.0)
+        return lobe.alpha;
+    const double sin2_i = (1.0 - cos_i) * (1.0 + cos_i), sin2_o = (1.0 - cos_o) * (1.0 + cos_o);
+    const int distribution = kernel_distribution(lobe.distribution);
+    double terms = kernels::lobe_width_term(
+        distribution, lobe.alpha * (kernels::lobe_width_normal(lobe.ior, sin2_i) +
+                                    kernels::lobe_width_normal(lobe.ior, sin2_o)));
+    for (const LobePassage& p : lobe.passages)
+        for (const double sin2 : {sin2_i, sin2_o})
+            terms += kernels::lobe_width_term(
+                distribution, kernels::lobe_width_passage(p.alpha, p.ior_above, p.ior_below, sin2));
+    return kernels::lobe_width(distribution, terms, cos_i, cos_o);
+}
+
+double lobe_value(const LobeShape& lobe, const Vec3& wi, const Vec3& wo) {
+    return kernels::microfacet_reflection(kernel_distribution(lobe.distribution),
+                                          lobe_width(lobe, wi.z, wo.z), wi, wo) *
+           table_ratio(lobe, wi, wo);
+}
 
 CosineTable lobe_albedo(const LobeShape& lobe) {
     return CosineTable(as_vector(spread_of(lobe)->rowwise().sum()));
@@ -108,7 +154,7 @@ LobeTables fit_lobe(const LobeShape& lobe, const std::function<double(double cos
         for (Eigen::Index i = 0; i < a.size(); ++i) {
             a(i) = albedo(i) > 0.0 ? a(i) * std::sqrt(target(i) / albedo(i)) : 0.0;
             // where the lobe loses its light below the horizon no amplitude is enough
-            a(i) = std::min(a(i), 1.0);
+            a(i) = std::min(a(i), lobe.table ? 2.0 : 1.0);
         }
     }
     const Eigen::VectorXd reached = a.cwiseProduct(*spread * a);
@@ -118,16 +164,18 @@ LobeTables fit_lobe(const LobeShape& lobe, const std::function<double(double cos
     return {CosineTable(as_vector(a)), CosineTable(as_vector(albedo))};
 }
 
-double effective_lobe_width(std::span<const StackElement> stack, std::size_t element) {
+LobeShape deeper_lobe(std::span<const StackElement> stack, std::size_t element) {
     const SurfaceValues& own = std::get<SurfaceValues>(stack[element]);
-    double variance = own.ior_above * own.alpha * own.ior_above * own.alpha;
-    for (const StackElement& above : stack.first(element))
-        if (const auto* surface = std::get_if<SurfaceValues>(&above)) {
-            const double bend = (surface->ior_below / surface->ior_above - 1.0) * surface->alpha;
-            variance += 0.5 * bend * bend;
-        }
-    const double steps = std::round(std::sqrt(variance) * 4096.0);
-    return std::clamp(steps, 4.0, 4096.0) / 4096.0;
+    LobeShape lobe;
+    lobe.alpha = own.alpha;
+    lobe.ior = own.ior_above;
+    lobe.element = element;
+    for (const StackElement& above : stack.first(element)) {
+        const auto* surface = std::get_if<SurfaceValues>(&above);
+        if (surface && surface->alpha > 0.0)
+            lobe.passages.push_back({surface->alpha, surface->ior_above, surface->ior_below});
+    }
+    return lobe;
 }
 
 } // namespace reradiant

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/core/portable.h"
 #include "reradiant/stack_elements.h"
 #include "reradiant/stack_model.h"
 
@@ -29,18 +30,28 @@ struct LobeTables {
     CosineTable amplitude, albedo;
 };
 
+/// Width of a lobe between two directions in air.
+double lobe_width(const LobeShape& lobe, double cos_i, double cos_o);
+/// Width to sample a lobe with for a direction in air: that towards its mirror direction.
+inline double sampling_width(const LobeShape& lobe, double cosine) {
+    return lobe_width(lobe, cosine, cosine);
+}
+
+/// Value of the lobe D G2 / (4 ci co), times its table's ratio, 1/sr without the cosine. Both
+/// directions are unit vectors in air.
+double lobe_value(const LobeShape& lobe, const kernels::Vec3& wi, const kernels::Vec3& wo);
+
 /// Albedo of the lobe D G2 / (4 ci co) itself, by cosine: what its facets send away at once when
 /// they reflect everything. Good to 1e-3.
 CosineTable lobe_albedo(const LobeShape& lobe);
 
 /// The amplitude whose lobe's albedo comes near `wanted` (unit 1, >= 0) without exceeding it at
-/// any node: fixed-point steps on a K a = wanted, K the lobe's own spread (without Fresnel).
+/// any node: fixed-point steps on a K a = wanted, K the lobe's own spread (without Fresnel). It is
+/// 1 at most, 2 for a shape with a table.
 LobeTables fit_lobe(const LobeShape& lobe, const std::function<double(double cosine)>& wanted);
 
-/// Width, in the air half vector, of the lobe that the interface at `element` reflects through
-/// the rough interfaces above it: variances add up (Belcour 2018, section 4), a reflection k at
-/// depth counts n_above alpha_k, a passage through interface j (n_j / n_(j-1) - 1) alpha_j twice,
-/// there and back. Rounded to 1/4096, so that tables can be shared, between that and 1.
-double effective_lobe_width(std::span<const StackElement> stack, std::size_t element);
+/// Returns the lobe, without its distribution, of what an interface of a stack reflects through the
+/// rough interfaces above it.
+LobeShape deeper_lobe(std::span<const StackElement> stack, std::size_t element);
 
 } // namespace reradiant

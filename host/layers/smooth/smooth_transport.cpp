@@ -33,6 +33,7 @@ public:
     double specular_delta(double c) const override { return response(c).reflection_down; }
     bool has_top_lobe() const override { return false; }
     const std::vector<LobeShape>& deeper_lobes() const override { return no_lobes_; }
+    std::vector<double> lobe_shares(double) const override { return {0.0}; }
     double lobe_amplitude(int, double) const override { return 0.0; }
     double residual(double) const override { return 0.0; }
     double residual_average() const override { return 0.0; }

@@ -6,6 +6,7 @@
 #include "host/render/tables/substrate_operator.h"
 #include "host/scene/model/closed_model.h"
 #include "kernels/core/shared.h"
+#include "kernels/scatter/facet_shape.h"
 #include "reradiant/error.h"
 
 #include <fmt/core.h>
@@ -155,6 +156,8 @@ private:
     void plan_lobes() {
         plan_.counts.lobes = static_cast<std::uint64_t>(plan_.features.lobes);
         plan_.features.deeper_lobes = plan_.counts.lobes > 0;
+        if (plan_.choice.model == Model::Adding && has_facet_lobe(material_.stack))
+            plan_.counts.floats += FACET_SHAPE_SIZE;
         if (plan_.choice.model == Model::WeidlichWilkie)
             for (const DeeperLobe& lobe : weidlich_wilkie_lobes(stack_))
                 if (std::holds_alternative<SlabValues>(stack_[lobe.element]))

@@ -26,6 +26,12 @@ public:
     std::uint32_t here() const { return static_cast<std::uint32_t>(tables_.size()); }
     void append(double value) { tables_.push_back(static_cast<float>(value)); }
 
+    std::uint32_t append_numbers(const std::vector<float>& numbers) {
+        const std::uint32_t offset = here();
+        tables_.insert(tables_.end(), numbers.begin(), numbers.end());
+        return offset;
+    }
+
     /// [phase][lane]
     std::uint32_t append_lanes(const std::function<double(int phase, int lane)>& value);
     /// [node]

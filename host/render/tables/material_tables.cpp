@@ -129,7 +129,11 @@ private:
         for (std::size_t l = 0; l < lobes.size(); ++l) {
             LobeRecord lobe{static_cast<float>(shapes[l].alpha),
                             static_cast<std::uint32_t>(kernel_distribution(shapes[l].distribution)),
-                            static_cast<std::uint32_t>(lobes[l].part), NO_INDEX};
+                            static_cast<std::uint32_t>(
+                                is_model_a() ? lobes[l].part : parts_above(shapes[l].element)),
+                            NO_INDEX, NO_INDEX};
+            if (shapes[l].table)
+                lobe.shape = lanes_.append_numbers(*shapes[l].table);
             const auto* slab = std::get_if<SlabValues>(&stack_[lobes[l].element]);
             if (is_model_a() && slab) {
                 lobe.alpha = static_cast<float>(slab->anisotropy);
@@ -137,6 +141,12 @@ private:
             }
             out_.lobes.push_back(lobe);
         }
+    }
+
+    /// Number of parts that lie above an element.
+    std::size_t parts_above(std::size_t element) const {
+        return static_cast<std::size_t>(std::lower_bound(parts_.begin(), parts_.end(), element) -
+                                        parts_.begin());
     }
 
     /// [2][phase][lane]: optical depth, then the share of it that scatters.

@@ -10,10 +10,10 @@ namespace reradiant {
 
 namespace {
 
-/// Lobes beneath the top one that adding makes at most: one for each rough interface and for each
-/// run of smooth ones beneath a rough one.
+/// Lobes besides the top one that adding makes at most: one of the light between the top's facets,
+/// one for each deeper rough interface and for each run of smooth ones beneath a rough one.
 int adding_lobe_count(const LayerStack& stack) {
-    int count = 0;
+    int count = has_facet_lobe(stack) ? 1 : 0;
     bool below_rough = false, in_run = false;
     for (std::size_t k = 0; k < stack.layers.size(); ++k) {
         const bool rough = stack.layers[k].alpha > 0.0;
@@ -26,6 +26,14 @@ int adding_lobe_count(const LayerStack& stack) {
 }
 
 } // namespace
+
+bool has_facet_lobe(const LayerStack& stack) {
+    if (stack.layers.empty())
+        return false;
+    const Layer& top = stack.layers.front();
+    return top.alpha > 0.0 && top.scattering == Scattering::Multiple &&
+           top.distribution != Distribution::Blinn && top.ior(reference_nm) > 1.0;
+}
 
 bool depends_on_wavelength(const Material& material) {
     const Conductor& metal = material.substrate.conductor;

@@ -33,7 +33,11 @@ private:
 /// Returns true when something that the tables by the angle hold depends on wavelength.
 bool depends_on_wavelength(const Material& material);
 
-/// Number of deeper rough lobes that a material can have under a model.
+/// Returns true where adding has a lobe of the light that the facets of the top interface scatter
+/// more than once, with a table of its own.
+bool has_facet_lobe(const LayerStack& stack);
+
+/// Number of rough lobes besides the top one that a material can have under a model.
 int deeper_lobe_count(const Material& material, Model model);
 
 } // namespace reradiant

@@ -1,0 +1,81 @@
+// Where a rough surface sends the light that its facets scatter more than once, as a table. Such
+// light has a peak of its own, beside that of the light that met one facet: the table holds the
+// ratio to the lobe D G2 / (4 cos_i cos_o) of ggx facets as rough as the surface, which varies
+// little. host/layers/rough/facet_shape.h makes it.
+#ifndef RERADIANT_FACET_SHAPE_H
+#define RERADIANT_FACET_SHAPE_H
+
+#include "kernels/core/portable.h"
+#include "kernels/core/shared.h"
+
+KERNELS_BEGIN
+
+/// Nodes of a table [cosine][other cosine][slope], symmetric in the cosines. Both cosines are
+/// uniform in their square roots, from FACET_SHAPE_LEAST on; slopes as facet_shape_slope says.
+#define FACET_SHAPE_COSINES 16u
+#define FACET_SHAPE_SLOPES 17u
+#define FACET_SHAPE_LEAST REAL(0.1)
+#define FACET_SHAPE_SIZE (FACET_SHAPE_COSINES * FACET_SHAPE_COSINES * FACET_SHAPE_SLOPES)
+
+/// A place between two nodes.
+typedef struct {
+    uint node;
+    real t;
+} FacetShapePlace;
+
+DEVICE_FUNCTION FacetShapePlace facet_shape_place(real position, uint nodes) {
+    const real inside = fmin(fmax(position, REAL(0.0)), (real)(nodes - 1u));
+    FacetShapePlace place;
+    place.node = (uint)inside;
+    place.node = place.node > nodes - 2u ? nodes - 2u : place.node;
+    place.t = inside - (real)place.node;
+    return place;
+}
+
+DEVICE_FUNCTION FacetShapePlace facet_shape_cosine(real cosine) {
+    const real x = sqrt(fmax(cosine, REAL(0.0)));
+    return facet_shape_place((x - FACET_SHAPE_LEAST) * ((real)(FACET_SHAPE_COSINES - 1u) /
+                                                        (REAL(1.0) - FACET_SHAPE_LEAST)),
+                             FACET_SHAPE_COSINES);
+}
+
+/// Place of the half vector of two directions among those that their cosines allow, 0 where their
+/// azimuths are opposite and 1 where they are the same: uniform in log(1 + s^2), s = tan(theta_h)
+/// / alpha, in which the ratio is smooth for all widths.
+DEVICE_FUNCTION real facet_shape_slope(real alpha, Vec3 wi, Vec3 wo) {
+    const real sin_i = sqrt(wi.x * wi.x + wi.y * wi.y), sin_o = sqrt(wo.x * wo.x + wo.y * wo.y);
+    const real product = sin_i * sin_o;
+    // sums of unit vectors and differences of cosines, where those of the sines would cancel
+    const real unit_i = REAL(1.0) / fmax(sin_i, REAL(1e-15));
+    const real unit_o = REAL(1.0) / fmax(sin_o, REAL(1e-15));
+    const real x = unit_i * wi.x + unit_o * wo.x, y = unit_i * wi.y + unit_o * wo.y;
+    const real inverse = REAL(1.0) / square(alpha * fmax(wi.z + wo.z, REAL(1e-15)));
+    const real least =
+        REAL(1.0) + square((wi.z - wo.z) / (alpha * fmax(sin_i + sin_o, REAL(1e-15))));
+    const real range = log1p(REAL(4.0) * product * inverse / least);
+    const real own = log1p(product * (x * x + y * y) * inverse / least);
+    return range > REAL(0.0) ? own / range : REAL(0.0);
+}
+
+/// Ratio to the ggx lobe of width `alpha`, unit 1, linear between the table's nodes. Both
+/// directions above the surface; symmetric in them.
+DEVICE_FUNCTION real facet_shape_value(GLOBAL_CONST shared_float* table, real alpha, Vec3 wi,
+                                       Vec3 wo) {
+    const FacetShapePlace i = facet_shape_cosine(wi.z), o = facet_shape_cosine(wo.z);
+    const FacetShapePlace s = facet_shape_place(
+        facet_shape_slope(alpha, wi, wo) * (real)(FACET_SHAPE_SLOPES - 1u), FACET_SHAPE_SLOPES);
+    real sum = REAL(0.0);
+    for (uint corner = 0u; corner < 4u; ++corner) {
+        const uint down = corner & 1u, right = corner >> 1u;
+        GLOBAL_CONST shared_float* row =
+            table + ((i.node + down) * FACET_SHAPE_COSINES + o.node + right) * FACET_SHAPE_SLOPES +
+            s.node;
+        sum += (down ? i.t : REAL(1.0) - i.t) * (right ? o.t : REAL(1.0) - o.t) *
+               (row[0] + s.t * (row[1] - row[0]));
+    }
+    return sum;
+}
+
+KERNELS_END
+
+#endif
