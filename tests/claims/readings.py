@@ -40,7 +40,7 @@ class Output:
         self.json = open(written).read() if os.path.exists(written) else run.stdout
         shutil.rmtree(folder)
         if run.returncode != 0:
-            raise NotRead(f"the command ends with {run.returncode}: {(run.stderr or run.stdout)[-2000:].strip()}")
+            raise NotRead(f"the command ends with {run.returncode}: {(run.stderr or run.stdout)[-600:].strip()}")
 
 
     def through(self, maker):
