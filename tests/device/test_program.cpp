@@ -44,7 +44,7 @@ protected:
     fs::path folder_;
 };
 
-TEST_F(ProgramCache, SecondBuildComesFromTheCache) {
+TEST_F(ProgramCache, Case43SecondBuildComesFromTheCache) {
     EXPECT_EQ(build().built, 1);
     EXPECT_EQ(build().from_cache, 1);
 }

@@ -6,7 +6,8 @@ Blocks marked ```sh go to one bash, in order, so that folders and variables hold
 ```python blocks each get an interpreter of their own. All start in FOLDER, which is made anew: it shows
 the checkout by links, and what the blocks write stays in it. A ```text block directly behind a block
 is what that prints: `...` stands for any text, alone in a line for any lines; numbers agree to one
-unit of their last digit or 1 %, whichever is more, and seconds and speeds are any number.
+unit of their last digit or 1 %, whichever is more, and seconds and speeds are any number. Lines of progress, which
+only a slow machine shows, do not count.
 
 A comment before a block says why it is not run (`<!-- not run: REASON -->`), or that only the full run,
 with RERADIANT_FULL_TESTS set, does it (`<!-- full run: REASON -->`). Both are printed.
@@ -28,6 +29,7 @@ FENCE = re.compile(r"^```(\w*)\s*$")
 REMARK = re.compile(r"^<!-- (not run|full run): (.+) -->$")
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 DEPENDS_ON_MACHINE = re.compile(r"^ ?(?:s|seconds?|min|minutes?|(?:million )?paths/s|[MG]B)\b")
+PROGRESS = re.compile(r"; about .+ to go$")
 MARK = "@@ block {} @@"
 
 
@@ -146,7 +148,7 @@ def outputs_of(blocks, folder):
     run = subprocess.run(["bash"], input=script_of(blocks), cwd=folder, env=environment_of(folder),
                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     parts = re.split(r"^@@ block \d+ @@\n", run.stdout, flags=re.MULTILINE)
-    return [part.splitlines() for part in parts[1:]], run.returncode
+    return [[line for line in part.splitlines() if not PROGRESS.search(line)] for part in parts[1:]], run.returncode
 
 
 def main():

@@ -58,6 +58,11 @@ class Documents(unittest.TestCase):
         self.assertIn("a.md:1: does not print", printed)
         self.assertIn("a.md:9: failed with 1", printed)
 
+    def test_progress_of_a_slow_machine_does_not_count(self):
+        status, printed = self.run_document("```sh\necho '4 spp, relMSE 0.021; about 2 min to go' >&2; echo 1\n```\n"
+                                            "\n```text\n1\n```\n")
+        self.assertEqual(status, 0, printed)
+
     def test_what_is_not_run_says_why(self):
         status, printed = self.run_document("<!-- not run: it takes a year -->\n```sh\nfalse\n```\n"
                                             "```sh\ntrue\n```\n")

@@ -1,3 +1,4 @@
+#include "host/fit/result/fit_summary.h"
 #include "host/fit/solver/solve_journal.h"
 #include "reradiant/error.h"
 #include "tests/fit/fit_cases.h"
@@ -77,6 +78,20 @@ TEST(SolveJournal, StepsOfAnotherFitAreRefused) {
     settings.solver.journal = &journal;
     const ReradiationMatrix other = true_matrix({two_fluorophores()[1]});
     EXPECT_THROW(fit_reradiation(noisy_data(other, 0.01, true, 1), settings), Error);
+}
+
+TEST(SolveJournal, ProgressCountsAllBranchesAndStandsInTheSummaryOfAFailure) {
+    const SolveProgress progress = SolveJournal(kept_after(50, 1)).progress();
+    EXPECT_GE(progress.iterations, 45); // what ends a minimisation is told as a step, too
+    EXPECT_LE(progress.iterations, 50);
+    EXPECT_GT(progress.finished, 0);
+    EXPECT_GT(progress.minimisations, progress.finished);
+    const auto failed = fit_failure_summary(FitModel::Factors, "device lost", progress);
+    EXPECT_EQ(failed["failure"]["stage"], "minimisation");
+    EXPECT_EQ(failed["failure"]["message"], "device lost");
+    EXPECT_EQ(failed["iterations"], progress.iterations);
+    const auto early = fit_failure_summary(FitModel::Factors, "no stack", SolveProgress{});
+    EXPECT_EQ(early["failure"]["stage"], "stack");
 }
 
 TEST(SolveJournal, DamagedStepsAreRefused) {

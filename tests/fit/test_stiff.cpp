@@ -97,7 +97,7 @@ TEST(Stiff, SaturatedBlockDoesNotBendTheRest) {
     EXPECT_LE(stokes_rmse(result.matrix, truth), noise);
 }
 
-TEST(Stiff, BadlyScaledDataGiveTheSameAnswer) {
+TEST(Stiff, Case48BadlyScaledDataGiveTheSameAnswer) {
     const ReradiationMatrix truth = true_matrix(two_fluorophores());
     const BispectralData data = noisy_data(truth, 0.01 * stokes_peak(truth), true, 2);
     BispectralData tiny = data;

@@ -45,7 +45,7 @@ TEST(KernelFresnel, Case14IndexNearOneKeepsItsReflectance) {
     EXPECT_LT(worst(input, 1e-20, 0), 1e-5);
 }
 
-TEST(KernelFresnel, Case13And15EndsAreExact) {
+TEST(KernelFresnel, Case13AndCase15EndsAreExact) {
     const std::vector<float> input = {0.3f, 1.0f, 0.0f, 1.5f, 0.2f, 1.0f / 1.5f};
     const std::vector<float> found = run_probe("probe_fresnel", input, 3, 2);
     EXPECT_EQ(found[0], 0.0f) << "equal media reflect nothing";

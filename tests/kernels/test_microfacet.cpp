@@ -74,7 +74,7 @@ TEST(KernelMicrofacet, BlinnMatchesDouble) {
     expect_twin(MICROFACET_BLINN, 0.02, 0.9);
 }
 
-TEST(KernelMicrofacet, Case8NarrowLobesStayFiniteAndRight) {
+TEST(KernelMicrofacet, Case08NarrowLobesStayFiniteAndRight) {
     expect_twin(MICROFACET_GGX, 1e-4, 1e-3);
     expect_twin(MICROFACET_BECKMANN, 1e-4, 1e-3);
     expect_twin(MICROFACET_BLINN, 1e-4, 1e-3);

@@ -24,7 +24,7 @@ TEST(KernelRandom, DeviceAndHostGiveTheSameBits) {
     }
 }
 
-TEST(KernelRandom, Case2LargestBitsStayBelowOne) {
+TEST(KernelRandom, Case02LargestBitsStayBelowOne) {
     EXPECT_LT(static_cast<float>(kernels::random_unit(0xffffffffu)), 1.0f);
     EXPECT_EQ(kernels::random_unit(0u), 0.0);
 }

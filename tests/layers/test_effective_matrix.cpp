@@ -56,7 +56,7 @@ TEST(EffectiveMatrix, FactoredFormEqualsTheDenseSolve) {
     }
 }
 
-TEST(EffectiveMatrix, Case28FeedbackCloseToOneIsSolvedAndAtOneIsRefused) {
+TEST(EffectiveMatrix, Case22AndCase28FeedbackCloseToOneIsSolvedAndAtOneIsRefused) {
     // lower triangle plus a coupling back, scaled to a known spectral radius
     Eigen::MatrixXd m(2, 2);
     m << 0.5, 0.5, 0.5, 0.5; // spectral radius 1

@@ -24,7 +24,7 @@ double largest_loss(const InterfaceOperator& op) {
 
 } // namespace
 
-TEST(InterfaceOperator, MultipleScatteringIsConservingAndReciprocalTogether) {
+TEST(InterfaceOperator, Case29MultipleScatteringIsConservingAndReciprocalTogether) {
     for (const Distribution d : {Distribution::Blinn, Distribution::Beckmann, Distribution::Ggx}) {
         const auto op = interface_operator({1.5, d, 0.4, Scattering::Multiple});
         EXPECT_LT(largest_loss(*op), 1e-11); // the scaling stops at 1e-14 a step
@@ -33,7 +33,7 @@ TEST(InterfaceOperator, MultipleScatteringIsConservingAndReciprocalTogether) {
     }
 }
 
-TEST(InterfaceOperator, SingleScatteringIsReciprocalAndLoses) {
+TEST(InterfaceOperator, Case29SingleScatteringIsReciprocalAndLoses) {
     const auto op = interface_operator({1.5, Distribution::Ggx, 0.4, Scattering::Single});
     EXPECT_LT((op->exchange - op->exchange.transpose()).cwiseAbs().maxCoeff(), 1e-15);
     const Eigen::VectorXd sums = op->exchange.colwise().sum().transpose();

@@ -117,7 +117,7 @@ TEST(Microfacet, Case08NarrowGgxFollowsItsTangentForm) {
     }
 }
 
-TEST(Microfacet, ReflectionIsReciprocalAndFiniteAtGrazing) {
+TEST(Microfacet, Case01ReflectionIsReciprocalAndFiniteAtGrazing) {
     for (const int d : distributions) {
         for (const double alpha : alphas) {
             const Vec3 a = direction(0.7, 0.2);

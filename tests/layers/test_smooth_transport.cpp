@@ -50,7 +50,7 @@ TEST(SmoothTransport, InternalReflectanceOfIndexOnePointFive) {
     EXPECT_NEAR(adding_transport({smooth(1.5)})->internal_reflectance(), 0.596346, 5e-7);
 }
 
-TEST(SmoothTransport, Case13And19NothingAboveTheSubstrateIsTheIdentity) {
+TEST(SmoothTransport, Case13AndCase19NothingAboveTheSubstrateIsTheIdentity) {
     for (const StackValues& stack : {StackValues{}, StackValues{smooth(1.0)}}) {
         const auto t = adding_transport(stack);
         for (const double c : {0.0, 1e-8, 0.3, 1.0}) {

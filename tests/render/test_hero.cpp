@@ -93,7 +93,7 @@ void expect_agreement(const Case& one, int hero, std::uint32_t samples) {
     }
 }
 
-TEST(Hero, AgreesWithTheCombInEveryBand) {
+TEST(Hero, Case32AgreesWithTheCombInEveryBand) {
     for (const Case& one : cases()) {
         expect_agreement(one, 4, test::is_full_run() ? 2048 : 128);
         if (test::is_full_run())

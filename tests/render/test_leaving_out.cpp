@@ -49,7 +49,7 @@ TEST(LeavingOut, Case23ZeroMatrixIsThePlainPathBitForBit) {
     }
 }
 
-TEST(LeavingOut, EditsOfNumbersBuildNoKernel) {
+TEST(LeavingOut, Case43EditsOfNumbersBuildNoKernel) {
     Scene scene = lit_scene(fluorescent({layer(1.5, 0.2, 0.4)}, shifted_matrix()));
     const RenderResult before = rendered(scene);
     EXPECT_EQ(before.build.built + before.build.from_cache, 4);

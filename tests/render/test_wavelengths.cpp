@@ -111,7 +111,7 @@ TEST(WavelengthPlan, AntiStokesLightOfTwoStepsIsRendered) {
         }
 }
 
-TEST(WavelengthPlan, NarrowLineStandsBesideTheCombAndKeepsItsPower) {
+TEST(WavelengthPlan, Case32NarrowLineStandsBesideTheCombAndKeepsItsPower) {
     for (const double width : {0.5, 5.0, 10.0, 15.0, 40.0})
         for (const double centre : {403.2, 405.0, 410.0}) {
             Scene scene = lit_by(Spectrum::line(centre, width, 2.0), material({}, 1.0));

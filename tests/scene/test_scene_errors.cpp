@@ -143,7 +143,7 @@ TEST_F(SceneErrors, MatrixThatBreaksEnergyIsRefusedAtItsKey) {
     EXPECT_NE(error.text.find("400"), std::string::npos) << error.text; // names the column
 }
 
-TEST_F(SceneErrors, NanInAMeshIsPlacedInTheMesh) {
+TEST_F(SceneErrors, Case07NanInAMeshIsPlacedInTheMesh) {
     const auto mesh = write("bad.obj", "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n");
     const auto file = write(
         "scene.toml", replaced(SMALL_SCENE, "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1",

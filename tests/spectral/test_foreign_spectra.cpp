@@ -81,7 +81,7 @@ TEST_F(ForeignSpectra, JcampPairs) {
     EXPECT_EQ(place(jcamp(units + "##XYPOINTS= (XY..XY)\n400 10\n400 11\n"), "twice").first, 11);
 }
 
-TEST_F(ForeignSpectra, JcampThatIsNotUnderstoodIsRefusedByName) {
+TEST_F(ForeignSpectra, Case35JcampThatIsNotUnderstoodIsRefusedByName) {
     const std::string points = "##XUNITS= NANOMETERS\n##YUNITS= REFLECTANCE\n##FIRSTX= 400\n"
                                "##LASTX= 420\n##NPOINTS= 3\n##XYDATA= (X++(Y..Y))\n";
     for (const char* packed : {"400+1+2+3\n", "400A0B1C2\n", "400 A1J2K3\n", "400@VKT%TLk\n"})
@@ -156,7 +156,7 @@ TEST_F(ForeignSpectra, CgatsFieldsOfOneSample) {
                 0.2, 1e-12);
 }
 
-TEST_F(ForeignSpectra, CgatsThatHoldsNoneOrManyIsRefused) {
+TEST_F(ForeignSpectra, Case35CgatsThatHoldsNoneOrManyIsRefused) {
     const std::string fields = "SAMPLE_ID NM_400 NM_500\nEND_DATA_FORMAT\n";
     EXPECT_EQ(place(cgats_head + fields + "BEGIN_DATA\n1 0.1 0.3\n2 0.2 0.4\nEND_DATA\n",
                     "2 sets of data")
@@ -207,7 +207,7 @@ TEST_F(ForeignSpectra, Tm27ValuesAreTheWholeTextOfAnElement) {
               (std::pair{5, 1}));
 }
 
-TEST_F(ForeignSpectra, TextsOfNumbersThatAreNoTableAreRefused) {
+TEST_F(ForeignSpectra, Case35TextsOfNumbersThatAreNoTableAreRefused) {
     const std::pair<const char*, const char*> heads[] = {
         {"%!PS", "PostScript"},
         {"P3", "PPM"},
@@ -221,7 +221,7 @@ TEST_F(ForeignSpectra, TextsOfNumbersThatAreNoTableAreRefused) {
     EXPECT_EQ(read("OFF-white\nnm,R\n400,0.1\n500,0.2\n")(400), 0.1);
 }
 
-TEST_F(ForeignSpectra, WhatIsNoTextIsRefusedByWhatItIs) {
+TEST_F(ForeignSpectra, Case35WhatIsNoTextIsRefusedByWhatItIs) {
     const std::string zip("PK\x03\x04\x14\0\x06\0", 8);
     const std::pair<std::string, const char*> files[] = {
         {zip, "Zip"},

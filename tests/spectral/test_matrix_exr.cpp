@@ -140,7 +140,7 @@ TEST_F(MatrixExr, NamesOfOtherProgramsAreRead) {
               (WavelengthGrid{374.6875, 29.375, 4}));
 }
 
-TEST_F(MatrixExr, EntriesGivenTwiceAndLargerImagesAreRefused) {
+TEST_F(MatrixExr, Case69EntriesGivenTwiceAndLargerImagesAreRefused) {
     EXPECT_NE(refusal({"T.400nm", "T.410nm", "T.400,0nm.400nm"}).find("the same entry"),
               std::string::npos);
     EXPECT_NE(refusal({"T.400nm", "T.410nm", "T.420xm"}).find("T.420xm"), std::string::npos);

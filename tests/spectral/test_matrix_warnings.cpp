@@ -98,7 +98,7 @@ TEST(MatrixWarnings, NoiseThatWasCutOffIsNoEmission) {
     }
 }
 
-TEST(MatrixWarnings, DeclaredAntiStokesEmissionIsBelieved) {
+TEST(MatrixWarnings, Case26DeclaredAntiStokesEmissionIsBelieved) {
     ReradiationMatrix matrix = exchanged(shipped("synthetic-orange.csv"));
     matrix.anti_stokes_allowed = true;
     for (const std::string& warning : matrix_warnings(matrix))

@@ -232,7 +232,7 @@ TEST_F(MatrixIo, Case26AntiStokesModelIsRefusedUnlessDeclared) {
               0.2);
 }
 
-TEST_F(MatrixIo, CsvTakesCrLfBlanksAndByteOrderMark) {
+TEST_F(MatrixIo, Case68CsvTakesCrLfBlanksAndByteOrderMark) {
     const ReradiationMatrix matrix = read_reradiation(write(
         "m.csv", "\xef\xbb\xbf# reradiation\r\n# quantity: per-band\r\n"
                  "# orientation: rows-excitation\r\n\r\nnm, 400 ,410\r\n 400,+0.1, 2e-1\r\n"));

@@ -82,7 +82,7 @@ TEST_F(SpectrumTables, StatedUnitsOfWavelengthAreConverted) {
         EXPECT_EQ(read(std::string(heading) + "\n400,0.1\n600,0.3\n")(500), 0.2) << heading;
 }
 
-TEST_F(SpectrumTables, WhatCannotBeInNanometresIsRefused) {
+TEST_F(SpectrumTables, Case35WhatCannotBeInNanometresIsRefused) {
     EXPECT_EQ(place("0.4,0.1\n0.7,0.9\n", "micrometres"), (std::pair{1, 1}));
     EXPECT_EQ(place("# c\nwl,R\n4000,0.1\n7000,0.9\n", "Angstrom"), (std::pair{3, 1}));
     EXPECT_EQ(place("14286,0.9\n25000,0.1\n", "1/cm"), (std::pair{1, 1}));
@@ -158,7 +158,7 @@ TEST_F(SpectrumTables, TitlesNameNoUnits) {
     EXPECT_EQ(place("Wavelength (inch),R\n400,0.1\n", "'inch'"), (std::pair{1, 1}));
 }
 
-TEST_F(SpectrumTables, WhatIsSaidAndNotReadIsRefused) {
+TEST_F(SpectrumTables, Case35WhatIsSaidAndNotReadIsRefused) {
     for (const char* heading :
          {"Band,Reflectance", "Angle (deg),I", "Temperature (K),R", "Year,Value", "Pixel number,R",
           "inverse nm,R", "Frequency,R", "Energy (keV),R", "Angle of incidence,R"})
@@ -181,7 +181,7 @@ TEST_F(SpectrumTables, WhatIsSaidAndNotReadIsRefused) {
     EXPECT_EQ(read("Scale factor,1\nnm,R\n400,0.5\n")(400), 0.5);
 }
 
-TEST_F(SpectrumTables, ARowThatWentWrongIsNoHeading) {
+TEST_F(SpectrumTables, Case35ARowThatWentWrongIsNoHeading) {
     EXPECT_EQ(place(",0.9\n400,0.1\n500,0.2\n", "missing"), (std::pair{1, 1}));
     EXPECT_EQ(place("x400,0.5,\n410,0.6,\n420,0.7,\n", "'x400'"), (std::pair{1, 1}));
     EXPECT_EQ(place("l00,50%\n410,51%\n", "'l00'"), (std::pair{1, 1}));
@@ -204,7 +204,7 @@ TEST_F(SpectrumTables, RowsAreSortedAndGivenOnce) {
     EXPECT_EQ(three.columns[2], (std::vector<double>{4, 3}));
 }
 
-TEST_F(SpectrumTables, GapsAreRefusedAndNeverClosedUp) {
+TEST_F(SpectrumTables, Case35GapsAreRefusedAndNeverClosedUp) {
     for (const char* gap :
          {"", "NA", "N/A", "--", "-", "nan", "NaN", "NAN", "null", "None", "#N/A", "\"\""})
         EXPECT_EQ(place("400,0.1\n500," + std::string(gap) + "\n600,0.2\n", "missing").first, 2)

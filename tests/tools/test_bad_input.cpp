@@ -60,7 +60,7 @@ TEST_F(BadInput, GridThatDoesNotFitIsPlaced) {
                          "scene.toml:4:");
 }
 
-TEST_F(BadInput, Case7NanInAMeshNamesTheVertex) {
+TEST_F(BadInput, Case07NanInAMeshNamesTheVertex) {
     put("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n");
     expect_scene_refused(replaced(small_scene(),
                                   "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1",

@@ -52,7 +52,7 @@ TEST_F(CheckCommand, SavedResultsHoldOnTheSameDevice) {
     expect_failure(2, "check --only nonsense", "nonsense");
 }
 
-TEST_F(BadDevice, SmallWorkGroupsAreTakenAsTheyAre) {
+TEST_F(BadDevice, Case37SmallWorkGroupsAreTakenAsTheyAre) {
     put("scene.toml", small_scene());
     for (const std::string size : {"1", "3"}) {
         const std::string environment = "POCL_MAX_WORK_GROUP_SIZE=" + size;

@@ -93,6 +93,7 @@ TEST_F(FitCommand, WritesMatrixModelReportAndJson) {
     EXPECT_EQ(json["rank"], 1);
     EXPECT_EQ(json["bytes"], 4 * 60);
     EXPECT_EQ(json["converged"], true);
+    EXPECT_TRUE(json["failure"].is_null());
     EXPECT_LE(json["kkt"].get<double>(), 1e-8);
     EXPECT_EQ(json["anti_stokes_energy"], 0.0);
     EXPECT_LT(json["relative_rmse"].get<double>(), 0.02);
@@ -154,10 +155,18 @@ TEST_F(FitCommand, BadInputIsRefusedAndNothingIsWritten) {
     expect_failure(2, "fit data.csv -o out.csv --unknown thickness", "--stack");
 }
 
-TEST_F(FitCommand, NothingIsWrittenWithoutConvergence) {
+TEST_F(FitCommand, WithoutConvergenceTheJsonAloneIsWritten) {
     put("data.csv", measured_csv());
-    expect_failure(1,
-                   "fit data.csv -o out.csv --model-file m.toml --json j.json "
-                   "--most-iterations 1",
-                   "did not converge");
+    const std::string command = "fit data.csv -o out.csv --model-file m.toml --most-iterations 1";
+    expect_failure(1, command, "did not converge");
+    EXPECT_EQ(run(command + " --json j.json").exit_code, 1);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.csv"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "m.toml"));
+    const auto json = nlohmann::json::parse(file_bytes(folder / "j.json"));
+    EXPECT_EQ(json["failure"]["stage"], "minimisation");
+    EXPECT_NE(json["failure"]["message"].get<std::string>().find("did not converge"),
+              std::string::npos);
+    EXPECT_EQ(json["converged"], false);
+    EXPECT_GE(json["iterations"].get<int>(), 1);
+    EXPECT_GT(json["kkt"].get<double>(), 0.0);
 }

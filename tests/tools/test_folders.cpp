@@ -66,7 +66,7 @@ TEST_F(Folders, KernelsAreBuiltWhereNoFolderThatIsNamedCanBeUsed) {
         EXPECT_NE(made.errors.find(text), std::string::npos) << made.errors;
 }
 
-TEST_F(Folders, DriversThatDoNotLoadAreNamed) {
+TEST_F(Folders, Case71DriversThatDoNotLoadAreNamed) {
     fs::create_directory(folder / "vendors");
     fs::copy_file("/etc/OpenCL/vendors/pocl.icd", folder / "vendors/pocl.icd");
     put("vendors/absent.icd", "libno-such-driver.so.1\n");

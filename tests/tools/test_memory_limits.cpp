@@ -33,7 +33,7 @@ const char* const commands[] = {
 
 } // namespace
 
-TEST_F(MemoryLimits, EveryCommandRefusesWhatIsOverItsLimitBeforeItWorks) {
+TEST_F(MemoryLimits, Case36EveryCommandRefusesWhatIsOverItsLimitBeforeItWorks) {
     for (const std::string command : commands) {
         const ProgramResult result = run(command + " --memory-limit 1000");
         const bool study = command.starts_with("study"); // its cells fail, one by one
@@ -46,7 +46,7 @@ TEST_F(MemoryLimits, EveryCommandRefusesWhatIsOverItsLimitBeforeItWorks) {
 }
 
 // Grids that a slip of the pen asks for: matrices between 480,000 bands would be 1e13 bytes.
-TEST_F(MemoryLimits, AbsurdGridsAreRefusedByDefault) {
+TEST_F(MemoryLimits, Case36AbsurdGridsAreRefusedByDefault) {
     expect_failure(2, "measure --preset red-lacquer -o out.csv --bands 300:780:0.001", "");
     expect_failure(2, "render scene.toml -o out.exr --bands 300:780:0.00001", "");
 }

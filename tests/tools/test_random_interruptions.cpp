@@ -95,17 +95,17 @@ protected:
 
 } // namespace
 
-TEST_F(RandomInterruptions, ResumedRenderEqualsTheUninterruptedOne) {
+TEST_F(RandomInterruptions, Case57ResumedRenderEqualsTheUninterruptedOne) {
     expect_same_end("", test::is_full_run() ? 50 : 3);
 }
 
-TEST_F(RandomInterruptions, WithHeroWavelengthsToo) {
+TEST_F(RandomInterruptions, Case57WithHeroWavelengthsToo) {
     if (!test::is_full_run())
         GTEST_SKIP() << "only in full runs";
     expect_same_end(" --wavelengths hero", 50);
 }
 
-TEST_F(RandomInterruptions, WithWalksToo) {
+TEST_F(RandomInterruptions, Case57WithWalksToo) {
     if (!test::is_full_run())
         GTEST_SKIP() << "only in full runs";
     expect_same_end(" --model walk", 50);

@@ -118,12 +118,13 @@ void add_converge_command(CLI::App& program, CommandContext& context) {
     auto command = std::make_shared<ConvergeCommand>();
     CLI::App* const app = program.add_subcommand(
         "converge", "Measures error against run time: CSV, JSON, plots and a page");
-    app->add_option("SCENE", command->scene, "scene file (TOML)")->required();
+    app->add_option("SCENE", command->scene, "scene file (TOML, or XML of Mitsuba 3)")->required();
     app->add_option("-o,--output", command->options.folder, "folder to write to")->required();
     app->add_option(
            "--methods", command->methods,
-           "separated by commas: a model of `render`, comb:N or hero:N (its --wavelengths), "
-           "adaptive, or several in one as adding+comb:16+adaptive")
+           "separated by commas: a model of `render` (auto, adding, weidlich-wilkie, walk), its "
+           "wavelengths (comb, comb:N, hero, hero:N), adaptive, or several in one as "
+           "adding+comb:16+adaptive or hero:8+adaptive")
         ->capture_default_str();
     app->add_option("--reference", command->options.reference,
                     "spectral EXR to compare with; default: one is rendered");

@@ -139,15 +139,16 @@ SampleIdentity fit_identity(const FitOptions& options, const FitSettings& settin
             {"most iterations", std::to_string(options.iterations)}};
 }
 
-/// Fits with a checkpoint. Returns nothing when it was interrupted, which it says.
+/// Fits with a checkpoint. Returns nothing when it was interrupted, which it says. What fails
+/// writes the JSON that was asked for: what it was and how far the fit got.
 std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings settings,
-                                      const BispectralData& data, bool quiet) {
+                                      const BispectralData& data, const CommonOptions& common) {
     KeptWork kept(options.output, fit_identity(options, settings, data),
                   options.checkpoint_seconds);
     SolveJournal journal;
     if (options.resume)
         kept.resume([&](const nlohmann::json& state) { journal = SolveJournal(state); });
-    ProgressBar bar(quiet);
+    ProgressBar bar(common.quiet);
     std::size_t steps = 0;
     journal.set_after_step([&] {
         kept.keep_when_due([&] { return journal.json(); });
@@ -163,6 +164,11 @@ std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings set
     } catch (const Interrupted&) {
         fmt::print(stderr, "{}\n", kept.interruption_text());
         return std::nullopt;
+    } catch (const Error& error) {
+        if (error.kind() == Error::Kind::Runtime)
+            write_json(common.json,
+                       fit_failure_summary(settings.model, error.what(), journal.progress()));
+        throw;
     }
 }
 
@@ -176,14 +182,16 @@ int run_fit(const FitOptions& options, const CommonOptions& common) {
     check_outputs(common, outputs, named_files());
     const BispectralData data = read_bispectral_data(options.data);
     check_fit_memory(data, settings, options.memory_limit_bytes);
-    const std::optional<FitResult> fitted = fit_and_keep(options, settings, data, common.quiet);
+    const std::optional<FitResult> fitted = fit_and_keep(options, settings, data, common);
     if (!fitted)
         return exit_interrupted;
     const FitResult& result = *fitted;
     warn(result);
-    if (!result.failure.empty())
+    if (!result.failure.empty()) {
+        write_json(common.json, fit_summary(result));
         throw_runtime_error(options.data.string() + ": " + result.failure,
                             "try another --model or --rank, or --loss huber for outliers");
+    }
     write_reradiation(options.output, result.matrix);
     if (!options.model_file.empty()) {
         const std::filesystem::path beside =
@@ -272,7 +280,8 @@ void add_fit_command(CLI::App& program, CommandContext& context) {
                       "go on from MATRIX.csv.checkpoint where it exists");
     command->footer(
         "Exits with 3, everything written, when the data hold more than the model found "
-        "in them.\nExample: reradiant fit orange.BFC -o orange.csv --report orange.html");
+        "in them. A fit that fails (exit code 1) writes --json alone: its `failure` and how far "
+        "it got.\nExample: reradiant fit orange.BFC -o orange.csv --report orange.html");
     command->callback(
         [options, &context] { context.exit_code = run_fit(*options, context.common); });
 }

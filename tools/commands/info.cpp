@@ -175,7 +175,9 @@ void add_info_command(CLI::App& program, CommandContext& context) {
     command
         ->add_option(
             "FILE", *file,
-            "EXR, CSV, BFC, SPD, TOML or XML file, or a spectrum of JCAMP-DX, CGATS or IES TM-27")
+            "scene (TOML, or XML of Mitsuba 3), material (TOML), spectral image (EXR), "
+            "re-radiation matrix (CSV, BFC or EXR), spectrum (CSV, SPD, JCAMP-DX, CGATS or IES "
+            "TM-27), or index of refraction of a metal (CSV of nm,n,k)")
         ->required();
     command->footer("Example: reradiant info out.exr");
     command->callback([file, &context] {

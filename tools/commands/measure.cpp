@@ -205,13 +205,18 @@ void add_measure_command(CLI::App& program, CommandContext& context) {
     source->add_option("MATERIAL", options->material, "TOML file with one [material]");
     source->add_option("--preset", options->preset, "a material of spectra/materials by name");
     command->add_option("-o,--output", options->output, "CSV file to write")->required();
-    command->add_option("--theta-i", options->theta_i, "incident angles, degrees: 0,45")
+    command
+        ->add_option("--theta-i", options->theta_i,
+                     "incident angles, degrees, as in 0,45; default: 0")
         ->delimiter(',');
-    command->add_option("--theta-o", options->theta_o, "outgoing angles, degrees: 5,20,60")
+    command
+        ->add_option("--theta-o", options->theta_o,
+                     "outgoing angles, degrees, as in 5,20,60; default: 0")
         ->delimiter(',');
     command
         ->add_option("--phi", options->phi,
-                     "azimuths of the outgoing from the incident direction; 180 is the mirror side")
+                     "azimuths of the outgoing from the incident direction, degrees; 180 is the "
+                     "mirror side; default: 0")
         ->delimiter(',');
     command->add_flag("--hemispherical", options->hemispherical,
                       "directional-hemispherical matrix instead of the BRDF");

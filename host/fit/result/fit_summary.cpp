@@ -14,6 +14,13 @@ nlohmann::ordered_json mask_summary(const FitMask& mask) {
     return {{"rules", mask_rules_text(mask.rules)}, {"entries", mask.measured}, {"found", found}};
 }
 
+nlohmann::ordered_json failure_of(const FitResult& result) {
+    if (result.failure.empty())
+        return nullptr;
+    return {{"stage", result.trace.converged ? "check" : "minimisation"},
+            {"message", result.failure}};
+}
+
 } // namespace
 
 nlohmann::ordered_json fit_summary(const FitResult& result) {
@@ -25,6 +32,7 @@ nlohmann::ordered_json fit_summary(const FitResult& result) {
                                    {"rmse", result.rmse},
                                    {"relative_rmse", result.relative_rmse},
                                    {"bytes", result.bytes},
+                                   {"failure", failure_of(result)},
                                    {"converged", result.trace.converged},
                                    {"kkt", result.trace.kkt},
                                    {"iterations", result.trace.iterations},
@@ -59,6 +67,17 @@ nlohmann::ordered_json fit_summary(const FitResult& result) {
                          {"ambiguities", result.stack->ambiguities}};
     }
     return json;
+}
+
+nlohmann::ordered_json fit_failure_summary(FitModel model, const std::string& message,
+                                           const SolveProgress& progress) {
+    const char* const stage = progress.minimisations == 0 ? "stack" : "minimisation";
+    return {{"model", fit_model_name(model)},
+            {"failure", {{"stage", stage}, {"message", message}}},
+            {"converged", false},
+            {"minimisations", progress.minimisations},
+            {"minimisations_finished", progress.finished},
+            {"iterations", progress.iterations}};
 }
 
 } // namespace reradiant

@@ -106,6 +106,22 @@ Json SolveJournal::json() const {
     return {{"solves", solves}, {"branches", branches}};
 }
 
+SolveProgress SolveJournal::progress() const {
+    SolveProgress sum;
+    for (const SolveState& state : solves_) {
+        ++sum.minimisations;
+        sum.finished += state.is_done ? 1 : 0;
+        sum.iterations += state.trace.iterations;
+    }
+    for (const auto& branch : branches_) {
+        const SolveProgress more = branch->progress();
+        sum.minimisations += more.minimisations;
+        sum.finished += more.finished;
+        sum.iterations += more.iterations;
+    }
+    return sum;
+}
+
 SolveState SolveJournal::begin(const Eigen::VectorXd& start) {
     const std::lock_guard lock(shared_->mutex);
     if (begun_ == solves_.size())

@@ -20,6 +20,11 @@ struct SolveState {
     bool is_done = false;
 };
 
+/// How far the minimisations of a fit have come, those of all branches together.
+struct SolveProgress {
+    int minimisations = 0, finished = 0, iterations = 0;
+};
+
 /// The minimisations of one fit in their order; those that may run at the same time in branches of
 /// their own, which are in the order in which they were asked for. A fit takes the same steps
 /// whenever it is run and by however many threads, so that one which finds its earlier run here
@@ -32,6 +37,8 @@ public:
     /// Returns this journal and all its branches as JSON. While they run, only `after_step` may
     /// call it.
     nlohmann::json json() const;
+    /// Counts what json() holds; may be called when it may.
+    SolveProgress progress() const;
 
     /// The next minimisation, as far as the earlier run came with it, or from its start. Run-time
     /// Error when the earlier run started elsewhere.
