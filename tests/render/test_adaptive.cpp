@@ -1,4 +1,5 @@
 // Adaptive sampling: where the samples go, that the image stays right, and what it gains.
+#include "host/render/film/error_estimate.h"
 #include "host/render/wavefront/adaptive.h"
 #include "tests/render/test_scenes.h"
 #include "tests/support/full_run.h"
@@ -50,7 +51,7 @@ std::uint64_t cost(const std::vector<AdaptiveGroup>& groups) {
 
 TEST(AdaptiveGroups, TheTileWithTheErrorGetsTheSamplesFirst) {
     SmallFilm film;
-    film.errors[3 * 20 + 9] = 10.0f; // tile of columns 8 to 15, rows 0 to 7
+    film.errors[3 * 20 + 8] = 10.0f; // tile of columns 8 to 15, rows 0 to 7
     const auto groups = film.groups(64 * 16, 64 * 16);
     ASSERT_EQ(groups.size(), 1U);
     EXPECT_EQ(groups[0].samples, 16U);
@@ -59,6 +60,17 @@ TEST(AdaptiveGroups, TheTileWithTheErrorGetsTheSamplesFirst) {
     EXPECT_EQ(groups[0].pixels.back().pixel, 7U * 20 + 15);
     for (const PixelSamples& pixel : groups[0].pixels)
         EXPECT_EQ(pixel.first_sample, 116U);
+}
+
+TEST(AdaptiveGroups, PixelsThatTellTheErrorDoNotDecide) {
+    SmallFilm film;
+    const auto before = film.groups(3000, 3000);
+    film.errors[3 * 20 + 9] = 10.0f;
+    EXPECT_FALSE(decides_where_samples_go(9, 3));
+    const auto after = film.groups(3000, 3000);
+    ASSERT_EQ(after.size(), before.size());
+    for (std::size_t i = 0; i < after.size(); ++i)
+        EXPECT_EQ(after[i].pixels.size(), before[i].pixels.size());
 }
 
 TEST(AdaptiveGroups, KeepTheBudgetAndDoubleWholeTiles) {

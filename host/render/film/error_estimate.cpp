@@ -1,10 +1,14 @@
 #include "host/render/film/error_estimate.h"
 
 #include "host/render/film/film_pixels.h"
+#include "host/render/film/likely_value.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <utility>
 
 namespace reradiant {
 
@@ -36,76 +40,100 @@ double mean_radiance(FilmSums film, const FilmLayout& layout, int bands) {
     return std::accumulate(parts.begin(), parts.end(), 0.0) / (static_cast<double>(pixels) * bands);
 }
 
-/// Pixels side by side in memory, which help to tell each other's true values.
-class Neighbours {
+/// What a pixel adds to the estimate, and the part of it whose truth is guessed.
+struct PixelError {
+    double value = 0.0, guessed = 0.0;
+};
+
+/// Whole rows of pixels, with those above and below, which help to tell each other's true values.
+class PixelRows {
 public:
-    static constexpr std::size_t most = 8;
+    PixelRows(FilmSums film, const FilmLayout& layout, int width, int bands)
+        : film_(film), layout_(layout), width_(static_cast<std::size_t>(width)),
+          rows_(pixels_of(film) / width_), bands_(static_cast<std::size_t>(bands)), sums_(bands) {}
 
-    explicit Neighbours(int bands)
-        : sums_(bands), bands_(static_cast<std::size_t>(bands)), values_(most * bands_),
-          differences_(most * bands_), totals_(bands_), squares_(bands_), noise_(bands_) {}
-
-    void read(const FilmStrip& strip, const FilmLayout& layout, std::size_t first,
-              std::size_t count) {
-        count_ = count;
-        for (std::vector<double>* sums : {&totals_, &squares_, &noise_})
-            std::fill(sums->begin(), sums->end(), 0.0);
-        for (std::size_t k = 0; k < count; ++k) {
-            sums_.read(strip, layout, first + k);
-            const double n = accepted(strip, first + k);
-            for (std::size_t b = 0; b < bands_; ++b) {
-                const double value = n > 0.0 ? sums_.sum[b] / n : 0.0;
-                values_[k * bands_ + b] = value;
-                differences_[k * bands_ + b] =
-                    n > 0.0 ? half_difference(sums_, layout, b, n, strip.samples(first + k)) : 0.0;
-                totals_[b] += value;
-                squares_[b] += value * value;
-                noise_[b] += differences_[k * bands_ + b] * differences_[k * bands_ + b];
-            }
-        }
+    /// Reads rows [first, end) and their neighbours.
+    void read(std::size_t first, std::size_t end) {
+        first_ = first == 0 ? 0 : first - 1;
+        end_ = std::min(rows_, end + 1);
+        seen_.resize((end_ - first_) * width_ * bands_);
+        for (std::size_t pixel = first_ * width_; pixel < end_ * width_; ++pixel)
+            read_pixel(pixel, &seen_[(pixel - first_ * width_) * bands_]);
     }
 
-    /// d^2 / (ref^2 + floor) of one of them, mean over its bands.
-    double squared_error(std::size_t k, double floor) const {
-        double total = 0.0;
+    /// d^2 / (truth^2 + floor) of a pixel as it is to be expected, mean over its bands.
+    PixelError error(std::size_t x, std::size_t y, double floor) const {
+        const SeenValue* own = bands_of(x, y);
+        const auto [around, count] = neighbours(x, y);
+        std::array<SeenValue, most_neighbours> others;
+        PixelError error;
         for (std::size_t b = 0; b < bands_; ++b) {
-            const double d = differences_[k * bands_ + b], reference = likely_value(k, b);
-            const double square = reference * reference + floor;
-            if (square > 0.0)
-                total += d * d / square;
+            const double square = own[b].difference * own[b].difference;
+            if (halves_agree(own[b])) {
+                const double scale = own[b].value * own[b].value + floor;
+                error.value += scale > 0.0 ? square / scale : 0.0;
+                continue;
+            }
+            for (std::size_t k = 0; k < count; ++k)
+                others[k] = around[k][b];
+            const double term =
+                square * expected_inverse_square(own[b], {others.data(), count}, floor);
+            error.value += term;
+            error.guessed += is_counted(own[b]) ? term : 0.0;
         }
-        return total / static_cast<double>(bands_);
+        error.value /= static_cast<double>(bands_);
+        error.guessed /= static_cast<double>(bands_);
+        return error;
     }
 
 private:
-    /// The truth's posterior mean, for a prior with the mean of the other pixels and as variance
-    /// theirs, less what their noise explains; at least what both halves have, for a prior that
-    /// knows nothing of a highlight. The pixel's own value would not do: one bright sample makes it
-    /// as large as the error, and hides that.
-    double likely_value(std::size_t k, std::size_t b) const {
-        const double value = values_[k * bands_ + b], d = differences_[k * bands_ + b];
-        if (count_ < 2)
-            return value;
-        const double others = static_cast<double>(count_) - 1.0;
-        const double mean = (totals_[b] - value) / others;
-        const double spread = (squares_[b] - value * value) / others - mean * mean;
-        const double prior = std::max(0.0, spread - (noise_[b] - d * d) / others);
-        const double posterior = d != 0.0 ? mean + (value - mean) * prior / (prior + d * d) : value;
-        return std::clamp(posterior, value - std::abs(d), value);
+    using Around = std::array<const SeenValue*, most_neighbours>;
+
+    const SeenValue* bands_of(std::size_t x, std::size_t y) const {
+        return &seen_[((y - first_) * width_ + x) * bands_];
     }
 
+    std::pair<Around, std::size_t> neighbours(std::size_t x, std::size_t y) const {
+        Around around{};
+        std::size_t count = 0;
+        for (std::size_t v = std::max(y, first_ + 1) - 1; v < std::min(end_, y + 2); ++v)
+            for (std::size_t u = std::max<std::size_t>(x, 1) - 1; u < std::min(width_, x + 2); ++u)
+                if (u != x || v != y)
+                    around[count++] = bands_of(u, v);
+        return {around, count};
+    }
+
+    void read_pixel(std::size_t pixel, SeenValue* seen) {
+        const FilmStrip& strip = *std::prev(
+            std::upper_bound(film_.begin(), film_.end(), pixel,
+                             [](std::size_t p, const FilmStrip& s) { return p < s.first_pixel; }));
+        const std::size_t at = pixel - strip.first_pixel;
+        sums_.read(strip, layout_, at);
+        const double n = accepted(strip, at);
+        for (std::size_t b = 0; b < bands_; ++b)
+            seen[b] = n > 0.0 ? SeenValue{sums_.sum[b] / n,
+                                          half_difference(sums_, layout_, b, n, strip.samples(at))}
+                              : SeenValue{};
+    }
+
+    FilmSums film_;
+    const FilmLayout& layout_;
+    std::size_t width_, rows_, bands_, first_ = 0, end_ = 0;
     PixelSums sums_;
-    std::size_t bands_, count_ = 0;
-    std::vector<double> values_, differences_;     ///< (pixel, band)
-    std::vector<double> totals_, squares_, noise_; ///< over pixels, (band)
+    std::vector<SeenValue> seen_; ///< (pixel, band)
 };
+
+/// Rows that are read at a time: enough that their neighbours do not cost as much again.
+constexpr std::size_t rows_together = 8;
 
 /// The errors of pixels that are added in order, and how far neighbours differ.
 struct ErrorSums {
-    double sum = 0.0, squared_differences = 0.0, fourth_powers = 0.0, waiting = 0.0;
+    double sum = 0.0, guessed = 0.0, squared_differences = 0.0, fourth_powers = 0.0, waiting = 0.0;
     std::size_t pixels = 0;
 
-    void add(double error) {
+    void add(PixelError added) {
+        const double error = added.value;
+        guessed += added.guessed;
         if (pixels++ % 2 == 1) {
             const double square = (error - waiting) * (error - waiting);
             squared_differences += square;
@@ -132,12 +160,15 @@ double student_quantile(double freedom) {
 /// correlate (sum and difference of the halves), hence twice the variance; their ratio is near an
 /// F distribution of equal degrees of freedom, which is symmetric in its logarithm. Where a few
 /// pixels hold most of the variance, it is itself hardly known: Student's t with the degrees of
-/// freedom that the differences' kurtosis leaves.
+/// freedom that the differences' kurtosis leaves. Truths that are guessed may be wrong together, as
+/// the pixels along one edge are alike.
 RelmseEstimate estimate_from(const std::vector<ErrorSums>& parts) {
-    double sum = 0.0, variance = 0.0, fourth_powers = 0.0;
+    constexpr double guess_spread = 0.5; ///< of the logarithm of a guessed pixel's error
+    double sum = 0.0, guessed = 0.0, variance = 0.0, fourth_powers = 0.0;
     std::size_t pixels = 0, paired = 0;
     for (const ErrorSums& part : parts) {
         sum += part.sum;
+        guessed += part.guessed;
         variance += part.squared_differences;
         fourth_powers += part.fourth_powers;
         pixels += part.pixels;
@@ -151,8 +182,9 @@ RelmseEstimate estimate_from(const std::vector<ErrorSums>& parts) {
     // their squares
     const double freedom = fourth_powers > 0.0 ? 3.0 * variance * variance / fourth_powers : 3.0;
     variance *= static_cast<double>(pixels) / static_cast<double>(paired);
-    const double spread =
-        sum > 0.0 ? std::exp(student_quantile(freedom) * std::sqrt(2.0 * variance) / sum) : 1.0;
+    const double chance = student_quantile(freedom) * std::sqrt(2.0 * variance);
+    const double guess = student_quantile(1e9) * guess_spread * guessed;
+    const double spread = sum > 0.0 ? std::exp(std::hypot(chance, guess) / sum) : 1.0;
     estimate.low = estimate.value / spread;
     estimate.high = estimate.value * spread;
     return estimate;
@@ -160,7 +192,7 @@ RelmseEstimate estimate_from(const std::vector<ErrorSums>& parts) {
 
 } // namespace
 
-RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int bands,
+RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int width, int bands,
                                 std::vector<float>* pixel_errors) {
     for (const FilmStrip& strip : film)
         for (std::size_t pixel = 0; pixel < strip.pixels(); ++pixel)
@@ -168,23 +200,24 @@ RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int ban
                 return {};
     const double mean = mean_radiance(film, layout, bands);
     const double floor = 0.01 * mean * mean;
-    std::vector<ErrorSums> parts(chunks_of(pixels_of(film)));
+    const auto columns = static_cast<std::size_t>(width);
+    const std::size_t rows = pixels_of(film) / columns;
+    std::vector<ErrorSums> parts((rows + rows_together - 1) / rows_together);
     if (pixel_errors)
         pixel_errors->resize(pixels_of(film));
-    for (const FilmStrip& strip : film)
-        for_each_chunk(strip, [&](std::size_t first, std::size_t end, std::size_t chunk) {
-            Neighbours neighbours(bands);
-            for (std::size_t pixel = first; pixel < end; pixel += Neighbours::most) {
-                const std::size_t count = std::min(end - pixel, Neighbours::most);
-                neighbours.read(strip, layout, pixel, count);
-                for (std::size_t k = 0; k < count; ++k) {
-                    const double error = neighbours.squared_error(k, floor);
-                    parts[chunk].add(error);
-                    if (pixel_errors)
-                        (*pixel_errors)[strip.first_pixel + pixel + k] = static_cast<float>(error);
-                }
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+        const std::size_t first = part * rows_together, end = std::min(rows, first + rows_together);
+        PixelRows pixels(film, layout, width, bands);
+        pixels.read(first, end);
+        for (std::size_t y = first; y < end; ++y)
+            for (std::size_t x = 0; x < columns; ++x) {
+                const PixelError error = pixels.error(x, y, floor);
+                if (!pixel_errors || !decides_where_samples_go(x, y))
+                    parts[part].add(error);
+                if (pixel_errors)
+                    (*pixel_errors)[y * columns + x] = static_cast<float>(error.value);
             }
-        });
+    });
     return estimate_from(parts);
 }
 

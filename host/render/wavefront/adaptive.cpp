@@ -1,5 +1,7 @@
 #include "host/render/wavefront/adaptive.h"
 
+#include "host/render/film/error_estimate.h"
+
 #include <algorithm>
 #include <map>
 #include <queue>
@@ -45,7 +47,9 @@ void read_film(Tiles& tiles, FilmSums film, std::span<const float> pixel_errors,
             Tile& tile = tiles.all[tiles.of(pixel, width)];
             ++tile.pixels;
             tile.samples = strip.samples(i);
-            tile.variance += static_cast<double>(pixel_errors[pixel]) * tile.samples;
+            const auto w = static_cast<std::size_t>(width);
+            if (decides_where_samples_go(pixel % w, pixel / w)) // half of them, hence twice
+                tile.variance += 2.0 * static_cast<double>(pixel_errors[pixel]) * tile.samples;
         }
 }
 

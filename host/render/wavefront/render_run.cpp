@@ -75,8 +75,9 @@ double RenderRun::seconds() const {
 
 void RenderRun::estimate_error() {
     wavefront_.film().read([&](FilmSums film) {
-        const RelmseEstimate estimate = estimated_relmse(film, plan_.film, result_.plan.film.count,
-                                                         options_.adaptive ? &errors_ : nullptr);
+        const RelmseEstimate estimate =
+            estimated_relmse(film, plan_.film, scene_.film.width, result_.plan.film.count,
+                             options_.adaptive ? &errors_ : nullptr);
         state_.relmse = estimate.value;
         state_.relmse_low = estimate.low;
         state_.relmse_high = estimate.high;
