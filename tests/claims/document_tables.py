@@ -1,6 +1,6 @@
 """Makes of what a program prints the table of a document: `PROGRAM | document_tables.py NAME`.
 
-    model_errors, fit_measured, recovery_10nm, recovery_5nm, error_table, faults, fuzz
+    model_errors, error_estimate, fit_measured, recovery_10nm, recovery_5nm, error_table, faults, fuzz
 """
 
 import re
@@ -26,6 +26,18 @@ def model_errors(text):
         rows.append([preset, walk, "not for it" if adding_0 == "refused" else f"{adding_0}, {adding}",
                      f"{nested_0}, {nested}", re.sub(r"[ *]*over[ *]*", "", largest.split("/")[2]).strip()])
     print_table(["preset", "walk", "adding: at 0, worst", "weidlich-wilkie: at 0, worst", "largest"], rows)
+
+
+def error_estimate(text):
+    shown, rows, held = ["8", "16", "64", "512"], {}, {}
+    for scene, sampling, samples, _, median, low, high, holds in tables_of(text)[0][1:]:
+        key = (scene, sampling)
+        rows.setdefault(key, {})[samples] = f"{median.split()[0]}, {low} to {high}"
+        of = [int(count) for count in holds.split(" of ")]
+        held[key] = [a + b for a, b in zip(held.get(key, [0, 0]), of)]
+    print_table(["scene", "sampling", "8 samples: median, 10 to 90 %", *shown[1:], "interval holds"],
+                [[*key, *(cells.get(samples, "-") for samples in shown), "{} of {}".format(*held[key])]
+                 for key, cells in rows.items()])
 
 
 def fit_measured(text):
