@@ -9,9 +9,11 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -153,6 +155,23 @@ private:
     std::span<const Target> targets_;
 };
 
+/// Walks come in blocks. A few rare walks of large weight would decide a node by themselves: the
+/// largest and the smallest two of its blocks are left out.
+constexpr unsigned blocks = 16, left_out = 2;
+
+std::vector<double> means_without_rare(const std::vector<std::vector<double>>& sums) {
+    std::vector<double> means(sums.front().size());
+    for (std::size_t t = 0; t < means.size(); ++t) {
+        std::array<double, blocks> own{};
+        for (std::size_t b = 0; b < blocks; ++b)
+            own[b] = sums[b][t];
+        std::sort(own.begin(), own.end());
+        const double sum = std::accumulate(own.begin() + left_out, own.end() - left_out, 0.0);
+        means[t] = sum / (blocks - 2 * left_out) * blocks / walk_rule.count;
+    }
+    return means;
+}
+
 /// Ratios for light from one node to those at it and nearer to the normal: [node][slope].
 std::vector<double> ratios_from(const RoughInterface& interface, std::size_t node) {
     const Vec3 wi = node_direction(node);
@@ -163,14 +182,12 @@ std::vector<double> ratios_from(const RoughInterface& interface, std::size_t nod
             targets.push_back(
                 {w, kernels::microfacet_reflection(MICROFACET_GGX, interface.alpha, wi, w)});
         }
-    std::vector<double> sums(targets.size(), 0.0);
     const ShapeWalk walk(interface, targets);
     const WalkStream stream(walk_rule, static_cast<unsigned>(node));
+    std::vector<std::vector<double>> sums(blocks, std::vector<double>(targets.size(), 0.0));
     for (unsigned k = 0; k < walk_rule.count; ++k)
-        walk.add(wi, WalkNumbers(stream, k), sums);
-    for (double& sum : sums)
-        sum /= walk_rule.count;
-    return sums;
+        walk.add(wi, WalkNumbers(stream, k), sums[k % blocks]);
+    return means_without_rare(sums);
 }
 
 /// Averages twice over neighbouring slopes: the ratio is smooth, its noise is not.
