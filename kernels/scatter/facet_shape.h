@@ -39,22 +39,23 @@ DEVICE_FUNCTION FacetShapePlace facet_shape_cosine(real cosine) {
                              FACET_SHAPE_COSINES);
 }
 
-/// Place of the half vector of two directions among those that their cosines allow, 0 where their
-/// azimuths are opposite and 1 where they are the same: uniform in log(1 + s^2), s = tan(theta_h)
-/// / alpha, in which the ratio is smooth for all widths.
+/// Place of the half vector of two directions among those that their cosines allow: 0 where their
+/// azimuths are opposite, 1 where they are the same. With q = (1 + cos phi) / 2 the square of its
+/// slope over alpha goes as 1 + rho q; the place is q (1 + k) / (q + k), k = 1 / sqrt(1 + rho),
+/// which is half way where that is half way in its logarithm.
 DEVICE_FUNCTION real facet_shape_slope(real alpha, Vec3 wi, Vec3 wo) {
     const real sin_i = sqrt(wi.x * wi.x + wi.y * wi.y), sin_o = sqrt(wo.x * wo.x + wo.y * wo.y);
-    const real product = sin_i * sin_o;
-    // sums of unit vectors and differences of cosines, where those of the sines would cancel
+    // sums of unit vectors and differences of cosines, where 1 + cos phi and the sines would cancel
     const real unit_i = REAL(1.0) / fmax(sin_i, REAL(1e-15));
     const real unit_o = REAL(1.0) / fmax(sin_o, REAL(1e-15));
     const real x = unit_i * wi.x + unit_o * wo.x, y = unit_i * wi.y + unit_o * wo.y;
-    const real inverse = REAL(1.0) / square(alpha * fmax(wi.z + wo.z, REAL(1e-15)));
-    const real least =
-        REAL(1.0) + square((wi.z - wo.z) / (alpha * fmax(sin_i + sin_o, REAL(1e-15))));
-    const real range = log1p(REAL(4.0) * product * inverse / least);
-    const real own = log1p(product * (x * x + y * y) * inverse / least);
-    return range > REAL(0.0) ? own / range : REAL(0.0);
+    const real q = REAL(0.25) * (x * x + y * y);
+    const real sum = square(alpha * fmax(wi.z + wo.z, REAL(1e-15)));
+    const real across = square(fmax(sin_i + sin_o, REAL(1e-15)));
+    const real difference = sum * square(wi.z - wo.z) / (square(alpha) * across);
+    // 1 / (1 + rho) = (sum + difference) / (sum + difference + 4 sin_i sin_o)
+    const real k = sqrt((sum + difference) / (sum + difference + REAL(4.0) * sin_i * sin_o));
+    return q * (REAL(1.0) + k) / (q + k);
 }
 
 /// Ratio to the ggx lobe of width `alpha`, unit 1, linear between the table's nodes. Both

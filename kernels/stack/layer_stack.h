@@ -105,7 +105,7 @@ DEVICE_FUNCTION real layer_stack_pdf(LayerStackView stack, const LayerChoice* ch
 #endif
 #if FEATURE_DEEPER_LOBES
     for (uint l = 0u; l < stack.record.lobe_count; ++l)
-        if (stack.lobes[l].slab == NO_INDEX)
+        if (stack.lobes[l].slab == NO_INDEX && stack.lobes[l].shape == NO_INDEX)
             pdf += layer_stack_probability(choice, CHOICE_LOBE + l) *
                    layer_stack_lobe_pdf((int)stack.lobes[l].distribution,
                                         layer_stack_lobe_width(stack, stack.lobes[l], wo.z, wo.z),
@@ -148,6 +148,14 @@ DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice*
     return sampling_cosine(u1, u2);
 }
 
+#if FEATURE_DEEPER_LOBES
+/// Light between the facets of the top interface: a ggx lobe times a tabulated ratio.
+DEVICE_FUNCTION real layer_stack_facets(LayerStackView stack, LobeRecord lobe, Vec3 wi, Vec3 wo) {
+    return microfacet_reflection(MICROFACET_GGX, lobe.alpha, wi, wo) *
+           facet_shape_value(stack.tables + lobe.shape, lobe.alpha, wi, wo);
+}
+#endif
+
 /// Scalar value of a further lobe, to be multiplied by its two amplitudes (and by what model A
 /// evaluates per lane). 1/sr, no cosine.
 #if FEATURE_DEEPER_LOBES
@@ -160,11 +168,10 @@ DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi
                                    model_a_facet(stack.layers, stack.lobes[lobe].layer, 0, wi, wo));
 #endif
     const LobeRecord record = stack.lobes[lobe];
-    const real value = microfacet_reflection(
-        (int)record.distribution, layer_stack_lobe_width(stack, record, wi.z, wo.z), wi, wo);
-    return record.shape == NO_INDEX
-               ? value
-               : value * facet_shape_value(stack.tables + record.shape, record.alpha, wi, wo);
+    if (record.shape != NO_INDEX)
+        return layer_stack_facets(stack, record, wi, wo);
+    return microfacet_reflection((int)record.distribution,
+                                 layer_stack_lobe_width(stack, record, wi.z, wo.z), wi, wo);
 }
 #endif
 

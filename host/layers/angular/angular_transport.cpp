@@ -117,6 +117,8 @@ public:
         return std::max(tables_.at(static_cast<std::size_t>(lobe)).amplitude(c), 0.0);
     }
     double residual(double c) const override {
+        if (facets_are_all_)
+            return 0.0;
         double rest = specular_albedo(c) - specular_delta(c) - top_lobe_albedo(c);
         for (const LobeTables& table : tables_)
             rest -= table.albedo(c);
@@ -125,8 +127,11 @@ public:
     double residual_average() const override { return residual_average_; }
     std::vector<double> lobe_shares(double c) const override {
         std::vector<double> shares{top_lobe_albedo(c)};
-        for (const LobeTables& table : tables_)
-            shares.push_back(table.albedo(c));
+        for (std::size_t l = 0; l < lobes_.size(); ++l) {
+            const double share = tables_[l].albedo(c);
+            shares.push_back(lobes_[l].table ? 0.0 : share);
+            shares.front() += lobes_[l].table ? share : 0.0;
+        }
         return shares;
     }
     double lost(double c) const override { return shares(c).lost; }
@@ -243,6 +248,8 @@ private:
                        facet_shape({top.ior_below, top.distribution, top.alpha, top.scattering})};
         if (!lobe.table)
             return;
+        facets_are_all_ = stack_.size() == first_rough_ + 1 ||
+                          std::none_of(stack_.begin() + 1, stack_.end(), interacts);
         const Eigen::VectorXd albedo = fit_->coefficients(system_.between_facets());
         lobes_.push_back(lobe);
         tables_.push_back(fit_lobe(lobe, [&](double c) { return fit_->evaluate(albedo, c); }));
@@ -273,6 +280,12 @@ private:
             }
         }
         return albedo;
+    }
+
+    /// True for what reflects or scatters light that came through the top interface.
+    static bool interacts(const StackElement& element) {
+        const auto* slab = std::get_if<SlabValues>(&element);
+        return slab ? slab->tau_scattering > 0.0 : true;
     }
 
     /// True for a rough interface; slabs do not make lobes.
@@ -308,6 +321,7 @@ private:
     SmoothStack lobe_top_;        ///< to the first rough interface, for what is not scattered
     std::size_t first_rough_ = 0; ///< element of an interface, or the number of elements
     bool top_rough_ = false;
+    bool facets_are_all_ = false; ///< nothing but the top interface sends light back
     double reciprocity_ = 1.0;
     double internal_reflectance_ = 0.0, residual_average_ = 0.0;
     ShareFit substrate_, air_, lost_;

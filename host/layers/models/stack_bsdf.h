@@ -49,7 +49,8 @@ public:
     virtual std::vector<LobeShape> lobes() const = 0;
 
     /// Returns approximately what each rough lobe reflects, the top one first (0 when there is
-    /// none), then the deeper ones. This serves only for choosing among them.
+    /// none), then the others. This serves only for choosing among them: one whose shape is
+    /// tabulated is sampled by the top lobe, which has its share too.
     virtual std::vector<double> lobe_shares(double cos_theta) const = 0;
     /// Returns approximately what slabs reflect by lobes of their own; the cosine lobe samples
     /// them.

@@ -48,13 +48,11 @@ Vec3 node_direction(std::size_t node) {
 /// Direction at a node of slope beside another one: the inverse of facet_shape_slope.
 Vec3 direction_at(double alpha, const Vec3& wi, std::size_t node, std::size_t slope) {
     const double c = node_cosine(node), s = sine(c);
-    const double inverse = std::pow(alpha * (wi.z + c), -2.0);
-    const double least = 1.0 + (wi.x - s) * (wi.x - s) * inverse;
-    const double range = std::log1p(4.0 * wi.x * s * inverse / least);
-    const double sum =
-        std::expm1(range * static_cast<double>(slope) / static_cast<double>(slopes - 1)) * least /
-        inverse;
-    const double x = wi.x * s > 0.0 ? std::clamp(sum / (2.0 * wi.x * s) - 1.0, -1.0, 1.0) : 0.0;
+    const double sum = std::pow(alpha * (wi.z + c), 2.0);
+    const double least = sum + std::pow((wi.z + c) * (wi.z - c) / std::max(wi.x + s, 1e-15), 2.0);
+    const double k = std::sqrt(least / (least + 4.0 * wi.x * s));
+    const double place = static_cast<double>(slope) / static_cast<double>(slopes - 1);
+    const double x = std::clamp(2.0 * k * place / (1.0 + k - place) - 1.0, -1.0, 1.0);
     return kernels::vec3(s * x, s * sine(x), c);
 }
 

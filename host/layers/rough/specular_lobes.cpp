@@ -145,8 +145,10 @@ LobeTables fit_lobe(const LobeShape& lobe, const std::function<double(double cos
     const std::shared_ptr<const Eigen::MatrixXd> spread = spread_of(lobe);
     Eigen::VectorXd target(CosineTable::nodes);
     for (int node = 0; node < CosineTable::nodes; ++node) {
-        // a little below what is there, so that interpolation does not overshoot it
-        target(node) = 0.998 * std::max(wanted(CosineTable::node_cosine(node)), 0.0);
+        // a little below what is there, so that interpolation does not overshoot it and the
+        // residual takes the rest; a lobe with a table stands for all
+        target(node) =
+            (lobe.table ? 1.0 : 0.998) * std::max(wanted(CosineTable::node_cosine(node)), 0.0);
     }
     Eigen::VectorXd a = target.cwiseSqrt();
     for (int step = 0; step < 12; ++step) {

@@ -107,14 +107,18 @@ private:
             }
             return false;
         });
+        const bool facets_are_all = has_facet_lobe(material_.stack) &&
+                                    material_.stack.layers.size() == 1 &&
+                                    !material_.stack.scatters();
         plan_.has_residual =
-            material_.stack.scatters() || at_any_wavelength([](const StackElements& stack) {
+            material_.stack.scatters() ||
+            (!facets_are_all && at_any_wavelength([](const StackElements& stack) {
                 const auto above = above_substrate(stack);
                 return std::any_of(above.begin(), above.end(), [](const StackElement& element) {
                     const auto* interface = std::get_if<SurfaceValues>(&element);
                     return interface && interface->scatters();
                 });
-            });
+            }));
     }
 
     /// Under model A every smooth part is a mirror, and every rough one whose scattering is
