@@ -98,49 +98,35 @@ TEST(ErrorInterval, CoversTheErrorOfBounces) {
     expect_covered(bounces());
 }
 
-/// A sample beneath a smooth layer, lit by a line: its highlights are a thousand times as bright as
-/// what is around them in that line's band. In small, edges hold nearly all of the error.
-Scene highlights() {
+/// Median of estimates over true errors, by eleven seeds, of a sample beneath a smooth layer that
+/// is lit by a line. In that line's band its highlights are far brighter than what is around them,
+/// and in small their edges hold much of the error.
+double median_ratio_at_highlights(std::uint32_t samples) {
     Scene scene = load_scene(std::string(RERADIANT_SOURCE_DIR) +
                              "/tools/examples/fluorescent-smooth-405.toml");
-    scene.film.width = 48;
-    scene.film.height = 20;
-    return scene;
-}
-
-/// Estimates over true errors at the last of `samples`, sorted.
-std::vector<double> ratios_to_true_errors(const Scene& scene, std::uint32_t samples,
-                                          bool adaptive) {
+    scene.film.width = 74;
+    scene.film.height = 31;
     RenderOptions options;
-    options.bands = grid_from_range(380, 700, 20);
     options.samples = 4096;
-    options.seed = 100000;
+    options.seed = 1000000;
     const SpectralImage reference = render(scene, device(), options).image;
     options.samples = samples;
-    options.adaptive = adaptive;
     std::vector<double> ratios;
     for (options.seed = 0; options.seed < 11; ++options.seed) {
         const RenderResult result = render(scene, device(), options);
         ratios.push_back(result.relmse / compare_images(result.image, reference).relmse);
     }
     std::sort(ratios.begin(), ratios.end());
-    return ratios;
+    return ratios[5];
 }
 
-/// An edge's pixel of which one sample saw the highlight was judged by the dark beside it, which
-/// made the estimate a hundred times too large. Medians of 11 seeds scatter by some 10 %.
+/// A pixel at an edge of which one sample saw the highlight was judged by the dark beside it: the
+/// estimate was more than a hundred times too large here. Single renders scatter by some 20 %, and
+/// what a truth may be is guessed, hence the wide bounds.
 TEST(ErrorEstimate, EdgesOfHighlightsAreNotJudgedByTheDarkBesideThem) {
-    for (const std::uint32_t samples : {16u, 64u}) {
-        const double median = ratios_to_true_errors(highlights(), samples, false)[5];
-        EXPECT_GT(median, 0.6) << samples << " samples";
-        EXPECT_LT(median, 1.6) << samples << " samples";
-    }
-}
-
-TEST(ErrorEstimate, AdaptiveRendersDoNotUnderestimateTheirError) {
-    const double median = ratios_to_true_errors(highlights(), 256, true)[5];
-    EXPECT_GT(median, 0.75);
-    EXPECT_LT(median, 1.35);
+    const double median = median_ratio_at_highlights(32);
+    EXPECT_GT(median, 0.6);
+    EXPECT_LT(median, 1.6);
 }
 
 TEST(LikelyValue, FireflyIsJudgedByItsNeighbours) {
