@@ -1,6 +1,6 @@
 """Makes of what a program prints the table of a document: `PROGRAM | document_tables.py NAME`.
 
-    model_errors, error_estimate, fit_measured, recovery_10nm, recovery_5nm, error_table, faults, fuzz
+    model_errors, direction_errors, error_estimate, fit_measured, recovery_10nm, recovery_5nm, error_table, faults, fuzz
 """
 
 import re
@@ -26,6 +26,11 @@ def model_errors(text):
         rows.append([preset, walk, "not for it" if adding_0 == "refused" else f"{adding_0}, {adding}",
                      f"{nested_0}, {nested}", re.sub(r"[ *]*over[ *]*", "", largest.split("/")[2]).strip()])
     print_table(["preset", "walk", "adding: at 0, worst", "weidlich-wilkie: at 0, worst", "largest"], rows)
+
+
+def direction_errors(text):
+    heading, *rows = cells_of("".join(line + "\n" for line in text.splitlines() if line.startswith("|")))
+    print_table(heading, rows)  # without what is logged between the rows
 
 
 def error_estimate(text):
@@ -138,8 +143,8 @@ def fuzz(text):
                 [cells[k] + cells[third + k] + cells[2 * third + k] for k in range(third)])
 
 
-MAKERS = {"model_errors": model_errors, "fit_measured": fit_measured, "error_table": error_table, "faults": faults,
-          "fuzz": fuzz, "recovery_10nm": lambda text: recovery(text, "10"),
+MAKERS = {"model_errors": model_errors, "direction_errors": direction_errors, "error_estimate": error_estimate,
+          "fit_measured": fit_measured, "error_table": error_table, "faults": faults, "fuzz": fuzz, "recovery_10nm": lambda text: recovery(text, "10"),
           "recovery_5nm": lambda text: recovery(text, "5")}
 
 if __name__ == "__main__":

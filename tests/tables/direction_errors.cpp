@@ -1,6 +1,6 @@
 // Directions of light by adding, against the random walk: the BRRDF of every preset that adding
 // takes and does not find smooth, and of single rough coats, at 0/0 to 80/80 degrees and all
-// azimuths, as a Markdown table. Arguments: names of presets; none: all of them and the coats.
+// azimuths, as a Markdown table. Arguments: names of presets, or `coats`; none: all of them.
 #include "reradiant/measure.h"
 #include "reradiant/paths.h"
 #include "reradiant/scene_file.h"
@@ -116,18 +116,21 @@ void print_coats() {
 
 int main(int argc, char** argv) {
     std::vector<std::string> names(argv + 1, argv + argc);
-    const bool all = names.empty();
-    if (all)
+    if (names.empty()) {
         names = preset_names();
+        names.emplace_back("coats");
+    }
     fmt::print(
         "Of 288 pairs of directions at {} nm, how many are off by more than 1 % and 3 standard "
         "errors of the walk; means are over all pairs.\n\n"
         "| material | beyond | mean difference | worst of those beyond | mean s.e. of the walk "
         "|\n| --- | --- | --- | --- | --- |\n",
         band.from_nm);
-    for (const std::string& name : names)
-        print_preset(name);
-    if (all)
-        print_coats();
+    for (const std::string& name : names) {
+        if (name == "coats")
+            print_coats();
+        else
+            print_preset(name);
+    }
     return 0;
 }
