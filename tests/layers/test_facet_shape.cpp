@@ -1,5 +1,6 @@
 #include "host/layers/models/adding.h"
 #include "host/layers/rough/facet_shape.h"
+#include "host/layers/rough/interface_file.h"
 #include "host/layers/rough/specular_lobes.h"
 #include "kernels/scatter/facet_shape.h"
 #include "tests/layers/walk_stacks.h"
@@ -43,7 +44,8 @@ constexpr std::array<std::array<double, 3>, 6> wide{
 } // namespace
 
 TEST(FacetShape, LightBetweenFacetsLeavesAsInTheWalk) {
-    // a product of two cosines is off by 0.3 to 40 times
+    // a product of two cosines is off by 0.3 to 40 times; the tables' own noise is some per cent of
+    // a light that is a tenth of the whole, and rare walks of large weight are left out of them
     struct Case {
         Distribution distribution;
         double alpha, ior;
@@ -92,8 +94,16 @@ TEST(FacetShape, OnlyWhereFacetsAreWalkedBetween) {
     EXPECT_FALSE(facet_shape({.scattering = Scattering::Single}));
 }
 
-TEST(FacetShape, IsReadFromTheDiskCacheAsItWasMade) {
-    // one table stands for its neighbourhood
+TEST(FacetShape, IsKeptOnDiskAsItWasMade) {
+    const RoughInterface interface { .eta = 1.5, .alpha = 0.25 };
+    const auto made = facet_shape(interface);
+    const InterfaceKey key{InterfaceNumbers::FacetShape, interface, 15000};
+    const auto kept = read_interface_file(key.file(), key, FACET_SHAPE_SIZE);
+    ASSERT_TRUE(made && kept);
+    EXPECT_EQ(std::vector<float>(kept->begin(), kept->end()), *made);
+}
+
+TEST(FacetShape, OneTableStandsForItsNeighbourhood) {
     EXPECT_EQ(facet_shape({.eta = 1.52, .alpha = 0.25}),
               facet_shape({.eta = 1.48, .alpha = 0.252}));
     EXPECT_NE(facet_shape({.eta = 1.5, .alpha = 0.25}), facet_shape({.eta = 1.6, .alpha = 0.25}));

@@ -248,8 +248,7 @@ private:
                        facet_shape({top.ior_below, top.distribution, top.alpha, top.scattering})};
         if (!lobe.table)
             return;
-        facets_are_all_ = stack_.size() == first_rough_ + 1 ||
-                          std::none_of(stack_.begin() + 1, stack_.end(), interacts);
+        facets_are_all_ = std::none_of(stack_.begin() + 1, stack_.end(), interacts);
         const Eigen::VectorXd albedo = fit_->coefficients(system_.between_facets());
         lobes_.push_back(lobe);
         tables_.push_back(fit_lobe(lobe, [&](double c) { return fit_->evaluate(albedo, c); }));
