@@ -4,6 +4,7 @@
 #include "host/layers/models/adding.h"
 #include "host/layers/rough/facet_shape.h"
 #include "host/layers/rough/interface_walk.h"
+#include "host/layers/rough/lost_flux.h"
 #include "host/layers/rough/specular_lobes.h"
 #include "host/layers/stack/quadrature.h"
 
@@ -117,12 +118,13 @@ public:
         return std::max(tables_.at(static_cast<std::size_t>(lobe)).amplitude(c), 0.0);
     }
     double residual(double c) const override {
-        if (facets_are_all_)
-            return 0.0;
+        const double given_back = lost_flux_ ? lost_flux_->given_back(c) : 0.0;
+        if (facets_are_all_) // a small difference of large shares would say less
+            return given_back;
         double rest = specular_albedo(c) - specular_delta(c) - top_lobe_albedo(c);
         for (const LobeTables& table : tables_)
             rest -= table.albedo(c);
-        return std::max(rest, 0.0);
+        return std::max(rest, given_back);
     }
     double residual_average() const override { return residual_average_; }
     std::vector<double> lobe_shares(double c) const override {
@@ -244,11 +246,13 @@ private:
         const SurfaceValues& top = std::get<SurfaceValues>(stack_.front());
         if (system_.between_facets().size() == 0)
             return;
+        facets_are_all_ = std::none_of(stack_.begin() + 1, stack_.end(), interacts);
+        if (top.distribution == Distribution::Blinn && top.scattering == Scattering::Multiple)
+            lost_flux_ = LostFlux::of(std::round(top.ior_below * 100.0) / 100.0, top.alpha);
         LobeShape lobe{Distribution::Ggx, top.alpha,
                        facet_shape({top.ior_below, top.distribution, top.alpha, top.scattering})};
         if (!lobe.table)
             return;
-        facets_are_all_ = std::none_of(stack_.begin() + 1, stack_.end(), interacts);
         const Eigen::VectorXd albedo = fit_->coefficients(system_.between_facets());
         lobes_.push_back(lobe);
         tables_.push_back(fit_lobe(lobe, [&](double c) { return fit_->evaluate(albedo, c); }));
@@ -320,6 +324,8 @@ private:
     SmoothStack lobe_top_;        ///< to the first rough interface, for what is not scattered
     std::size_t first_rough_ = 0; ///< element of an interface, or the number of elements
     bool top_rough_ = false;
+    /// Of V-cavities at the top; its IOR is rounded, so that a dispersive material needs few.
+    std::shared_ptr<const LostFlux> lost_flux_;
     bool facets_are_all_ = false; ///< nothing but the top interface sends light back
     double reciprocity_ = 1.0;
     double internal_reflectance_ = 0.0, residual_average_ = 0.0;

@@ -16,7 +16,7 @@ namespace reradiant {
 namespace {
 
 /// This version must be raised when the numbers or the layout of a stored file change.
-constexpr std::uint32_t format_version = 5;
+constexpr std::uint32_t format_version = 6;
 
 std::uint64_t bits_of(double value) {
     std::uint64_t bits = 0;

@@ -39,9 +39,9 @@ struct Facet {
     Vec3 refracted; ///< turned over, in the frame of the other medium: z > 0 leaves
 };
 
-Facet facet_response(const kernels::WalkSurface& facets, const Vec3& v, double u1, double u2) {
+Facet facet_response(const kernels::WalkSurface& facets, const Vec3& v, const Vec3& h) {
     Facet facet{};
-    facet.h = kernels::microfacet_sample(facets.distribution, facets.alpha, v, u1, u2);
+    facet.h = h;
     facet.cos_i = kernels::vec3_dot(v, facet.h);
     facet.reflectance = kernels::walk_reflectance(facets, std::max(facet.cos_i, 0.0));
     facet.reflected = kernels::walk_reflected(v, facet.h);
@@ -49,16 +49,17 @@ Facet facet_response(const kernels::WalkSurface& facets, const Vec3& v, double u
     return facet;
 }
 
-/// Single scattering for a distribution sampled by microfacet_sample; returns the reflected share.
+/// Single scattering; returns the reflected share.
 double scatter_once(const kernels::WalkSurface& facets, const Vec3& wi, WalkNumbers& numbers,
                     std::vector<Departure>& departures) {
-    const double u1 = numbers.next(), u2 = numbers.next();
-    const Facet facet = facet_response(facets, wi, u1, u2);
+    const double u1 = numbers.next(), u2 = numbers.next(), u = numbers.next();
+    const Facet facet =
+        facet_response(facets, wi, kernels::walk_sample_facet(facets, wi, u1, u2, u));
     if (facet.cos_i <= 0.0)
         return 0.0;
     const auto leaves = [&](double share, const Vec3& wo) {
         return share *
-               kernels::walk_drawn_share(facets, wi, facet.h, wo, kernels::vec3_dot(wo, facet.h));
+               kernels::walk_single_share(facets, wi, facet.h, wo, kernels::vec3_dot(wo, facet.h));
     };
     double reflected = 0.0;
     if (facet.reflected.z > 0.0) {
@@ -82,7 +83,10 @@ public:
         double u1 = numbers.next(), u2 = numbers.next();
         walk_ = kernels::walk_between_facets(facets, wi, numbers.next());
         while (weight_ > 0.0 && walk_.order < 1000) {
-            const Facet facet = facet_response(walk_.surface, walk_.v, u1, u2);
+            const kernels::WalkSurface& seen = walk_.surface;
+            const Facet facet = facet_response(
+                seen, walk_.v,
+                kernels::microfacet_sample(seen.distribution, seen.alpha, walk_.v, u1, u2));
             if (walk_.order == 0 && facet.reflected.z > 0.0) {
                 first_lobe =
                     facet.reflectance *
