@@ -10,35 +10,38 @@
 
 namespace reradiant {
 
+/// Rays are traced so many at a time; a device without vectors so wide takes them one by one.
+inline constexpr int packet_rays = 16;
+
 #if RERADIANT_EMBREE_MAJOR >= 4
 
-inline void embree_intersect(RTCScene scene, RTCRayHit& rayhit, bool coherent) {
+inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& packet, bool coherent) {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
     arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    rtcIntersect1(scene, &rayhit, &arguments);
+    rtcIntersect16(valid, scene, &packet, &arguments);
 }
 
-inline void embree_occluded(RTCScene scene, RTCRay& ray) {
+inline void embree_occluded(RTCScene scene, const int* valid, RTCRay16& packet) {
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
-    rtcOccluded1(scene, &ray, &arguments);
+    rtcOccluded16(valid, scene, &packet, &arguments);
 }
 
 #else
 
-inline void embree_intersect(RTCScene scene, RTCRayHit& rayhit, bool coherent) {
+inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& packet, bool coherent) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags =
         coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcIntersect1(scene, &context, &rayhit);
+    rtcIntersect16(valid, scene, &context, &packet);
 }
 
-inline void embree_occluded(RTCScene scene, RTCRay& ray) {
+inline void embree_occluded(RTCScene scene, const int* valid, RTCRay16& packet) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcOccluded1(scene, &context, &ray);
+    rtcOccluded16(valid, scene, &context, &packet);
 }
 
 #endif

@@ -5,12 +5,14 @@
 #include "host/geometry/surfaces.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <mutex>
+#include <numeric>
 
 #include <fmt/core.h>
 #include <tbb/blocked_range.h>
@@ -36,19 +38,48 @@ bool is_traceable(const RayRecord& r) {
     return r.t_far >= 0.0f && std::isfinite(sum) && has_direction;
 }
 
-RTCRay embree_ray(const RayRecord& r) {
-    RTCRay ray{};
-    ray.org_x = r.origin_x;
-    ray.org_y = r.origin_y;
-    ray.org_z = r.origin_z;
-    ray.tnear = std::fmax(r.t_near, 0.0f);
-    ray.dir_x = r.direction_x;
-    ray.dir_y = r.direction_y;
-    ray.dir_z = r.direction_z;
-    ray.tfar = r.t_far;
-    ray.mask = 0xffffffffu;
-    return ray;
-}
+/// Rays that Embree traces together, and where each belongs.
+template <typename Rays>
+class Packet {
+public:
+    bool is_full() const { return count_ == packet_rays; }
+    bool is_empty() const { return count_ == 0; }
+    int count() const { return count_; }
+    std::uint32_t place(int k) const { return places_[static_cast<std::size_t>(k)]; }
+    const int* valid() const { return valid_.data(); }
+    Rays& rays() { return rays_; }
+
+    void add(const RayRecord& r, std::uint32_t place) {
+        RTCRay16& rays = rays_of(rays_);
+        const auto k = static_cast<std::size_t>(count_++);
+        rays.org_x[k] = r.origin_x;
+        rays.org_y[k] = r.origin_y;
+        rays.org_z[k] = r.origin_z;
+        rays.tnear[k] = std::fmax(r.t_near, 0.0f);
+        rays.dir_x[k] = r.direction_x;
+        rays.dir_y[k] = r.direction_y;
+        rays.dir_z[k] = r.direction_z;
+        rays.tfar[k] = r.t_far;
+        rays.time[k] = 0.0f;
+        rays.mask[k] = 0xffffffffu;
+        rays.flags[k] = rays.id[k] = 0;
+        valid_[k] = -1;
+        places_[k] = place;
+    }
+    void clear() {
+        count_ = 0;
+        valid_.fill(0);
+    }
+
+private:
+    static RTCRay16& rays_of(RTCRay16& rays) { return rays; }
+    static RTCRay16& rays_of(RTCRayHit16& rays) { return rays.ray; }
+
+    Rays rays_;
+    alignas(64) std::array<int, packet_rays> valid_{};
+    std::array<std::uint32_t, packet_rays> places_{};
+    int count_ = 0;
+};
 
 HitRecord no_hit() {
     HitRecord record{};
@@ -101,12 +132,10 @@ void for_each_chunk(std::size_t count, int threads, const Work& work) {
     });
 }
 
-template <typename Work>
-void for_each_ray(std::size_t count, int threads, const Work& work) {
-    for_each_chunk(count, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            work(i);
-    });
+std::vector<std::uint32_t> places_of(std::size_t count) {
+    std::vector<std::uint32_t> places(count);
+    std::iota(places.begin(), places.end(), 0u);
+    return places;
 }
 
 } // namespace
@@ -121,11 +150,13 @@ struct Geometry::Implementation {
     void attach(const OwnedPrimitives<Primitive>& owned);
     void attach(const OwnedMesh& mesh);
     void check(const char* doing) const;
-    HitRecord nearest(const RayRecord& record, bool coherent) const;
-    void occlude(RayRecord& record) const;
+    /// Finds the nearest hits of the rays that `live` lists from `begin` to `end`.
     void hit(const RaysToHit& rays, std::size_t begin, std::size_t end) const;
+    void hit(const RaysToHit& rays, Packet<RTCRayHit16>& packet) const;
+    /// Marks those of the listed rays that something blocks; returns how many were active.
     std::uint64_t block(const RaysToBlock& rays, std::size_t begin, std::size_t end) const;
-    HitRecord describe(const RayRecord& record, const RTCRayHit& found) const;
+    void block(const RaysToBlock& rays, Packet<RTCRay16>& packet) const;
+    HitRecord describe(const RayRecord& record, const RTCRayHit16& found, std::size_t k) const;
     template <typename Primitive>
     HitRecord describe(const OwnedPrimitives<Primitive>& owned, unsigned int index, Ray ray,
                        double t) const;
@@ -231,12 +262,12 @@ HitRecord Geometry::Implementation::describe(const OwnedPrimitives<Primitive>& o
     return record_of(hit, owned.owners[index]);
 }
 
-HitRecord Geometry::Implementation::describe(const RayRecord& record,
-                                             const RTCRayHit& found) const {
-    const unsigned int index = found.hit.primID;
+HitRecord Geometry::Implementation::describe(const RayRecord& record, const RTCRayHit16& found,
+                                             std::size_t k) const {
+    const unsigned int index = found.hit.primID[k];
     const Ray ray = ray_of(record);
-    const double t = found.ray.tfar;
-    const void* source = sources[found.hit.geomID];
+    const double t = found.ray.tfar[k];
+    const void* source = sources[found.hit.geomID[k]];
     if (source == &surfaces.spheres)
         return describe(surfaces.spheres, index, ray, t);
     if (source == &surfaces.rectangles)
@@ -245,50 +276,64 @@ HitRecord Geometry::Implementation::describe(const RayRecord& record,
         return describe(surfaces.disks, index, ray, t);
     const auto& owned = *static_cast<const OwnedMesh*>(source);
     const TrianglePrimitive triangle = triangle_of(owned.mesh, index);
-    const auto barycentric = triangle.barycentric(ray, {found.hit.u, found.hit.v});
+    const auto barycentric = triangle.barycentric(ray, {found.hit.u[k], found.hit.v[k]});
     SurfaceHit hit = triangle.describe(ray, barycentric);
     interpolate_vertex_data(owned.mesh, index, barycentric, hit);
     return record_of(hit, owned.owner);
 }
 
-HitRecord Geometry::Implementation::nearest(const RayRecord& record, bool coherent) const {
-    if (!is_traceable(record))
-        return no_hit();
-    RTCRayHit found{};
-    found.ray = embree_ray(record);
-    found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    embree_intersect(scene, found, coherent);
-    return found.hit.geomID == RTC_INVALID_GEOMETRY_ID ? no_hit() : describe(record, found);
-}
-
-void Geometry::Implementation::occlude(RayRecord& record) const {
-    if (is_traceable(record)) {
-        RTCRay ray = embree_ray(record);
-        embree_occluded(scene, ray);
-        if (ray.tfar >= 0.0f)
-            return;
-    }
-    record.t_far = -1.0f;
-}
-
-/// Finds the nearest hits of the rays that `live` lists from `begin` to `end`.
 void Geometry::Implementation::hit(const RaysToHit& rays, std::size_t begin,
                                    std::size_t end) const {
-    for (std::size_t i = begin; i < end; ++i)
-        rays.hits[rays.live[i]] = nearest(rays.rays[rays.live[i]], rays.coherent);
+    Packet<RTCRayHit16> packet;
+    for (std::size_t i = begin; i < end; ++i) {
+        const std::uint32_t place = rays.live[i];
+        if (is_traceable(rays.rays[place]))
+            packet.add(rays.rays[place], place);
+        else
+            rays.hits[place] = no_hit();
+        if (packet.is_full() || (i + 1 == end && !packet.is_empty()))
+            hit(rays, packet);
+    }
+}
+
+void Geometry::Implementation::hit(const RaysToHit& rays, Packet<RTCRayHit16>& packet) const {
+    RTCRayHit16& found = packet.rays();
+    std::fill_n(found.hit.geomID, packet_rays, RTC_INVALID_GEOMETRY_ID);
+    embree_intersect(scene, packet.valid(), found, rays.coherent);
+    for (int i = 0; i < packet.count(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const std::uint32_t place = packet.place(i);
+        rays.hits[place] = found.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
+                               ? no_hit()
+                               : describe(rays.rays[place], found, k);
+    }
+    packet.clear();
 }
 
 std::uint64_t Geometry::Implementation::block(const RaysToBlock& rays, std::size_t begin,
                                               std::size_t end) const {
     std::uint64_t active = 0;
+    Packet<RTCRay16> packet;
     for (std::size_t i = begin; i < end; ++i) {
-        RayRecord& ray = rays.rays[rays.live[i]];
-        if (ray.t_far >= 0.0f) {
-            ++active;
-            occlude(ray);
-        }
+        const std::uint32_t place = rays.live[i];
+        RayRecord& ray = rays.rays[place];
+        active += ray.t_far >= 0.0f ? 1 : 0;
+        if (is_traceable(ray))
+            packet.add(ray, place);
+        else
+            ray.t_far = -1.0f;
+        if (packet.is_full() || (i + 1 == end && !packet.is_empty()))
+            block(rays, packet);
     }
     return active;
+}
+
+void Geometry::Implementation::block(const RaysToBlock& rays, Packet<RTCRay16>& packet) const {
+    embree_occluded(scene, packet.valid(), packet.rays());
+    for (int i = 0; i < packet.count(); ++i)
+        if (packet.rays().tfar[static_cast<std::size_t>(i)] < 0.0f)
+            rays.rays[packet.place(i)].t_far = -1.0f;
+    packet.clear();
 }
 
 Geometry::Geometry(const Scene& scene, bool wants_parameters)
@@ -297,12 +342,13 @@ Geometry::~Geometry() = default;
 
 void Geometry::intersect(std::span<const RayRecord> rays, std::span<HitRecord> hits, bool coherent,
                          int threads) const {
-    for_each_ray(rays.size(), threads,
-                 [&](std::size_t i) { hits[i] = implementation_->nearest(rays[i], coherent); });
+    const std::vector<std::uint32_t> all = places_of(rays.size());
+    trace({rays, hits, all, coherent}, {}, threads);
 }
 
 void Geometry::occlude(std::span<RayRecord> rays, int threads) const {
-    for_each_ray(rays.size(), threads, [&](std::size_t i) { implementation_->occlude(rays[i]); });
+    const std::vector<std::uint32_t> all = places_of(rays.size());
+    trace({}, {rays, all}, threads);
 }
 
 TraceStatistics Geometry::trace(const RaysToHit& rays, const RaysToBlock& shadow_rays,

@@ -148,7 +148,9 @@ RenderResult render_image(const RenderCommand& command, const CommonOptions& com
         const double by_samples = static_cast<double>(state.samples) / command.render.samples;
         const double by_time = state.seconds / command.render.time_seconds;
         bar.update(std::min(1.0, std::max(by_samples, by_time)),
-                   fmt::format("{} spp, relMSE {:.2g}", state.samples, state.relmse));
+                   std::isfinite(state.relmse)
+                       ? fmt::format("{} spp, relMSE {:.2g}", state.samples, state.relmse)
+                       : fmt::format("{} spp", state.samples));
         return !interrupt_requested();
     };
     return team != nullptr ? render_together(scene, device, command.render, *team, progress, show)

@@ -73,7 +73,17 @@ double RenderRun::seconds() const {
     return seconds_before_ + seconds_since(rendering_) - observing_seconds_;
 }
 
+/// An estimate costs as much as half a sample of a simple scene: the many short passes at the
+/// beginning go without, but where somebody looks or samples or the end depend on it.
+bool RenderRun::wants_estimate(bool observed) const {
+    constexpr std::uint32_t short_passes = 64, growth = 4;
+    return observed || options_.adaptive || options_.relmse > 0.0 ||
+           state_.samples >= short_passes || state_.samples >= growth * estimated_samples_ ||
+           must_stop();
+}
+
 void RenderRun::estimate_error() {
+    estimated_samples_ = state_.samples;
     wavefront_.film().read([&](FilmSums film) {
         const RelmseEstimate estimate =
             estimated_relmse(film, plan_.film, scene_.film.width, result_.plan.film.count,
@@ -103,7 +113,10 @@ void RenderRun::after_pass(std::uint32_t samples, const RenderObserver& observe,
                            const std::function<bool(const RenderProgress&)>& goes_on) {
     state_.samples = samples;
     state_.seconds = seconds();
-    estimate_error();
+    state_.relmse = state_.relmse_high = std::numeric_limits<double>::infinity();
+    state_.relmse_low = 0.0;
+    if (wants_estimate(static_cast<bool>(observe)))
+        estimate_error();
     result_.passes.push_back(state_);
     if (observe) {
         const Clock::time_point start = Clock::now();
@@ -111,6 +124,10 @@ void RenderRun::after_pass(std::uint32_t samples, const RenderObserver& observe,
         observing_seconds_ += seconds_since(start);
     }
     result_.interrupted = goes_on && !goes_on(state_);
+    if (result_.interrupted && estimated_samples_ != samples) {
+        estimate_error();
+        result_.passes.back() = state_;
+    }
     checkpoint_.after_pass(wavefront_, result_);
 }
 

@@ -31,8 +31,9 @@ public:
     /// Returns what each pixel adds to the estimated error, for adaptive renders.
     std::span<const float> pixel_errors();
 
-    /// The film holds so many samples now. Estimates the error, shows the pass to the observer, and
-    /// writes a checkpoint when it is time or when `goes_on`, which is asked last, says no.
+    /// The film holds so many samples now. Estimates the error where it is time to, shows the pass
+    /// to the observer, and writes a checkpoint when it is time or when `goes_on`, which is asked
+    /// last, says no.
     void after_pass(std::uint32_t samples, const RenderObserver& observe,
                     const std::function<bool(const RenderProgress&)>& goes_on);
     bool interrupted() const { return result_.interrupted; }
@@ -44,6 +45,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
+    bool wants_estimate(bool observed) const;
     void estimate_error();
     SpectralImage image_so_far() const;
 
@@ -57,6 +59,8 @@ private:
     Wavefront wavefront_;
     CheckpointFile checkpoint_;
     RenderProgress state_;
+    std::uint32_t estimated_samples_ =
+        2;                      ///< of the last estimate; of the first one 4 times so many
     std::vector<float> errors_; ///< per pixel, if adaptive; empty before the first estimate
     double seconds_before_ = 0.0, observing_seconds_ = 0.0;
 };
