@@ -1,4 +1,5 @@
-// Stage 1: camera rays. One work-item a path; path = local pixel * samples + local sample.
+// Stage 1: camera rays, PATHS_TOGETHER of them a work-item; path = local pixel * samples + local
+// sample.
 #include "kernels/core/features.h"
 #include "kernels/core/portable.h"
 #include "kernels/core/sequence.h"
@@ -19,19 +20,29 @@ PixelSamples path_sample(BatchRecord batch, __global const PixelSamples* chosen,
 }
 
 __kernel void generate(KERNEL_SIGNATURE(GENERATE_ARGUMENTS)) {
-    const uint path = (uint)get_global_id(0);
-    if (path >= batch.pixels * batch.samples)
+    const uint first = (uint)get_global_id(0) * PATHS_TOGETHER;
+    const uint count = batch.pixels * batch.samples;
+    if (first >= count)
         return;
-    const PixelSamples own = path_sample(batch, chosen, path);
-    const uint pixel = own.pixel, sample = own.first_sample;
+    const uint together = min(count - first, (uint)PATHS_TOGETHER);
+    Words pixel = 0u, sample = 0u;
+    for (uint k = 0u; k < together; ++k) {
+        const PixelSamples own = path_sample(batch, chosen, first + k);
+        OF_PATH(uint, pixel, k) = own.pixel;
+        OF_PATH(uint, sample, k) = own.first_sample;
+    }
+    const NumberBlock numbers =
+        path_numbers(pixel, sample, 0u, render.sequence_blocks, render.seed);
+    const Words phase = wavelength_phases(pixel, sample, render.phases, render.seed);
 
-    const Random4 u = path_numbers(pixel, sample, 0u, render.sequence_blocks, render.seed).first;
-    const CameraRay ray = camera_ray(render.camera, (real)(pixel % render.camera.width) + u.b,
-                                     (real)(pixel / render.camera.width) + u.c, u.a, u.d);
-    const PathState state = {
-        pixel, sample, wavelength_phase(pixel, sample, render.phases, render.seed),
-        0u,    -1.0f,  1.0f};
-
-    rays[path] = ray_record(ray.origin, ray.direction, INFINITY);
-    paths[path] = state;
+    for (uint k = 0u; k < together; ++k) {
+        const uint own = OF_PATH(uint, pixel, k);
+        const Random4 u = numbers_of_path(&numbers, k);
+        const CameraRay ray = camera_ray(render.camera, (real)(own % render.camera.width) + u.b,
+                                         (real)(own / render.camera.width) + u.c, u.a, u.d);
+        const PathState state = {own, OF_PATH(uint, sample, k), OF_PATH(uint, phase, k), 0u, -1.0f,
+                                 1.0f};
+        rays[first + k] = ray_record(ray.origin, ray.direction, INFINITY);
+        paths[first + k] = state;
+    }
 }

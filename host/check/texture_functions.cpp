@@ -26,10 +26,10 @@ std::vector<CheckedFunction> random_functions() {
                              1, exact, out[0] = random_unit(random_hash((uint)in[0], (uint)in[1]))),
             CHECKED_FUNCTION("random_unit", "kernels/core/random.h", (Arguments{counter}), 1, exact,
                              out[0] = random_unit((uint)in[0] * 256u + 255u)),
-            CHECKED_FUNCTION("wavelength_phase", "kernels/core/wavelength.h",
+            CHECKED_FUNCTION("wavelength_phases", "kernels/core/wavelength.h",
                              (Arguments{counter, counter, integer(6), counter}), 1, exact,
-                             out[0] = (real)wavelength_phase((uint)in[0], (uint)in[1],
-                                                             1u << (uint)in[2], (uint)in[3])),
+                             out[0] = (real)wavelength_phases((uint)in[0], (uint)in[1],
+                                                              1u << (uint)in[2], (uint)in[3])),
     };
 }
 

@@ -9,12 +9,12 @@
 
 KERNELS_BEGIN
 
-/// Phase of a sample, `phases` a power of two up to 2^16: an Owen-scrambled radical inverse for the
+/// Phases of samples, `phases` a power of two up to 2^16: an Owen-scrambled radical inverse for the
 /// even samples and another for the odd ones. The difference of these two halves, which estimates
 /// the error, then knows of phases that were not seen yet.
-DEVICE_FUNCTION uint wavelength_phase(uint pixel, uint sample, uint phases, uint seed) {
-    const uint order = random_hash(2u * pixel + (sample & 1u), seed);
-    const uint place = sequence_scrambled(sample >> 1, order); // the index is the reversed inverse
+DEVICE_FUNCTION Words wavelength_phases(Words pixel, Words sample, uint phases, uint seed) {
+    const Words order = sequence_hash(2u * pixel + (sample & 1u), seed);
+    const Words place = sequence_scrambled(sample >> 1, order); // the index is the reversed inverse
     return ((place >> 16) * phases) >> 16;
 }
 

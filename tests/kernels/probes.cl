@@ -65,7 +65,7 @@ __kernel void probe_random(__global const float* in, __global float* out, uint c
 
 __kernel void probe_sequence(__global const float* in, __global float* out, uint count) {
     ITEM;
-    const Random4 r = sequence_4(i / 7u, i, i % 9u, 42u);
+    const NumberBlock r = sequence_block(i / 7u, i, i % 9u, 42u);
     out[4 * i] = r.a;
     out[4 * i + 1] = r.b;
     out[4 * i + 2] = r.c;

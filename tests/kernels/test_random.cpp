@@ -46,18 +46,18 @@ TEST(KernelRandom, NeighbouringCountersFillTheSquareEvenly) {
 TEST(KernelWavelength, PhasesAreStratifiedInBothHalvesWhichAreIndependent) {
     int together = 0;
     for (std::uint32_t pixel = 0; pixel < 800; ++pixel)
-        together += kernels::wavelength_phase(pixel, 0u, 8u, 5u) ==
-                    kernels::wavelength_phase(pixel, 1u, 8u, 5u);
+        together += kernels::wavelength_phases(pixel, 0u, 8u, 5u) ==
+                    kernels::wavelength_phases(pixel, 1u, 8u, 5u);
     EXPECT_NEAR(together, 100, 50); // an eighth; 9.4 is one standard deviation
     for (const std::uint32_t pixel : {0u, 17u, 4711u}) {
         std::set<std::uint32_t> even, odd;
         for (std::uint32_t sample = 0; sample < 16; ++sample)
-            (sample % 2 ? odd : even).insert(kernels::wavelength_phase(pixel, sample, 8u, 5u));
+            (sample % 2 ? odd : even).insert(kernels::wavelength_phases(pixel, sample, 8u, 5u));
         EXPECT_EQ(even.size(), 8u);
         EXPECT_EQ(odd.size(), 8u);
         std::set<std::uint32_t> quarters; // few samples spread over many phases
         for (std::uint32_t sample = 0; sample < 8; sample += 2)
-            quarters.insert(kernels::wavelength_phase(pixel, sample, 512u, 5u) / 128u);
+            quarters.insert(kernels::wavelength_phases(pixel, sample, 512u, 5u) / 128u);
         EXPECT_EQ(quarters.size(), 4u);
     }
 }

@@ -1,4 +1,6 @@
+#include "host/device/buffer.h"
 #include "kernels/core/sequence.h"
+#include "kernels/core/wavelength.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>
@@ -14,14 +16,15 @@ namespace reradiant {
 namespace {
 
 using namespace test;
+using kernels::NumberBlock;
 using kernels::Random4;
-using kernels::sequence_4;
+using kernels::sequence_block;
 
 TEST(KernelSequence, DeviceAndHostGiveTheSameBits) {
     const std::size_t count = 10000;
     const std::vector<float> found = run_probe("probe_sequence", {0.0f}, count, 4);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Random4 r = sequence_4(i / 7u, i, i % 9u, 42u);
+        const NumberBlock r = sequence_block(i / 7u, i, i % 9u, 42u);
         EXPECT_EQ(static_cast<double>(found[4 * i]), r.a);
         EXPECT_EQ(static_cast<double>(found[4 * i + 1]), r.b);
         EXPECT_EQ(static_cast<double>(found[4 * i + 2]), r.c);
@@ -43,6 +46,26 @@ void expect_one_in_every_elementary_box(const std::vector<Point>& points) {
     }
 }
 
+TEST(KernelSequence, SixteenPathsAtOnceHaveTheNumbersOfEach) {
+    constexpr std::size_t paths = 16 * 100;
+    Kernel kernel(build_program(device(), "tests/kernels/together.cl", {{"PATHS_TOGETHER", 16}}),
+                  "together", 4);
+    DeviceArray<float> numbers(device(), 8 * paths);
+    DeviceArray<std::uint32_t> phases(device(), paths);
+    kernel.bind(numbers.buffer(), phases.buffer());
+    kernel.launch(device(), paths / 16);
+    const auto found = numbers.map(CL_MAP_READ, 0, 8 * paths);
+    const auto phase = phases.map(CL_MAP_READ, 0, paths);
+    for (std::uint32_t i = 0; i < paths; ++i) {
+        const NumberBlock u = kernels::path_numbers(i / 7u, i, 3u, 7u, 42u);
+        const NumberBlock v = kernels::path_numbers(i / 7u, i, 8u, 7u, 42u);
+        const std::array expected = {u.a, u.b, u.c, u.d, v.a, v.b, v.c, v.d};
+        for (std::size_t k = 0; k < 8; ++k)
+            ASSERT_EQ(found.span()[8 * i + k], expected[k]) << "path " << i << ", number " << k;
+        ASSERT_EQ(phase.span()[i], kernels::wavelength_phases(i / 7u, i, 64u, 42u)) << i;
+    }
+}
+
 TEST(KernelSequence, PairsOfEitherHalfAreNets) {
     for (const std::uint32_t pixel : {0u, 12345u})
         for (const std::uint32_t dimension : {0u, 3u})
@@ -50,7 +73,7 @@ TEST(KernelSequence, PairsOfEitherHalfAreNets) {
                 for (const std::uint32_t first : {0u, 64u}) {
                     std::vector<Point> bc, ad;
                     for (std::uint32_t i = first; i < first + 64u; ++i) {
-                        const Random4 r = sequence_4(pixel, 2u * i + half, dimension, 1u);
+                        const NumberBlock r = sequence_block(pixel, 2u * i + half, dimension, 1u);
                         bc.push_back({r.b, r.c});
                         ad.push_back({r.a, r.d});
                     }
@@ -64,9 +87,10 @@ TEST(KernelSequence, PairsOfEitherHalfAreNets) {
 /// is mean + 4.75 sd + 12, about 1e-6.
 TEST(KernelSequence, DifferentNumbersAreIndependentOverPixels) {
     const auto pairs = [](std::uint32_t pixel) {
-        const Random4 r = sequence_4(pixel, 6u, 1u, 0u), other = sequence_4(pixel, 6u, 2u, 0u);
-        const Random4 half = sequence_4(pixel, 7u, 1u, 0u),
-                      next = sequence_4(pixel + 1u, 6u, 1u, 0u);
+        const NumberBlock r = sequence_block(pixel, 6u, 1u, 0u),
+                          other = sequence_block(pixel, 6u, 2u, 0u);
+        const NumberBlock half = sequence_block(pixel, 7u, 1u, 0u),
+                          next = sequence_block(pixel + 1u, 6u, 1u, 0u);
         return std::vector<Point>{{r.a, r.b},     {r.a, r.c},     {r.a, r.d},     {r.b, r.c},
                                   {r.b, r.d},     {r.c, r.d},     {r.a, other.a}, {r.b, other.b},
                                   {r.c, other.c}, {r.d, other.d}, {r.a, half.a},  {r.b, half.b},
@@ -99,10 +123,10 @@ TEST(KernelSequence, Case34TenBouncesOf65536SamplesLeaveNoPeriodicBins) {
     std::vector<std::array<std::uint8_t, dimensions>> bins(samples);
     for (std::uint32_t sample = 0; sample < samples; ++sample)
         for (std::uint32_t bounce = 0; bounce < bounces; ++bounce) {
-            const kernels::RandomBlocks u =
-                kernels::path_numbers(77u, sample, 2u * bounce, 2u * bounces, 5u);
-            const std::array numbers = {u.first.a,  u.first.b,  u.first.c,  u.first.d,
-                                        u.second.a, u.second.b, u.second.c, u.second.d};
+            const NumberBlock u = kernels::path_numbers(77u, sample, 2u * bounce, 2u * bounces, 5u),
+                              v = kernels::path_numbers(77u, sample, 2u * bounce + 1u, 2u * bounces,
+                                                        5u);
+            const std::array numbers = {u.a, u.b, u.c, u.d, v.a, v.b, v.c, v.d};
             for (std::size_t k = 0; k < 8; ++k)
                 bins[sample][8 * bounce + k] = static_cast<std::uint8_t>(numbers[k] * 16);
         }
@@ -127,7 +151,7 @@ TEST(KernelSequence, IntegratesSmoothFunctionsBetterThanChance) {
         for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
             double sum = 0.0;
             for (std::uint32_t i = 0; i < samples; ++i) {
-                const Random4 r = sequence_4(pixel, i, 2u, 9u);
+                const NumberBlock r = sequence_block(pixel, i, 2u, 9u);
                 sum += std::exp(r.b) * std::cos(r.c);
             }
             const double error = sum / samples - (std::exp(1.0) - 1.0) * std::sin(1.0);

@@ -180,5 +180,39 @@ TEST(ErrorInterval, ObserversSeeTheImageSoFarAndTheirTimeDoesNotCount) {
     EXPECT_LT(result.passes.back().seconds, result.total_seconds - 2.0);
 }
 
+/// Passes that double would go to half the error that was asked for.
+TEST(StopAtError, LittleIsRenderedBeyondIt) {
+    Scene scene = bare();
+    scene.film.width = scene.film.height = 64; // the estimate scatters little
+    double ratios = 0.0;
+    int renders = 0;
+    for (const double wanted : {0.7e-3, 0.35e-3, 0.18e-3})
+        for (const bool adaptive : {false, true})
+            for (std::uint32_t seed = 0; seed < 3; ++seed) {
+                RenderOptions options;
+                options.samples = 100000;
+                options.relmse = wanted;
+                options.seed = seed;
+                options.adaptive = adaptive;
+                options.bands = grid_from_range(400, 700, 50);
+                const RenderResult result = render(scene, device(), options);
+                EXPECT_LE(result.relmse, wanted);
+                EXPECT_GT(result.relmse, 0.4 * wanted) << wanted << ' ' << adaptive << ' ' << seed;
+                ratios += result.relmse / wanted;
+                ++renders;
+            }
+    EXPECT_GT(ratios / renders, 0.75);
+}
+
+TEST(ErrorInterval, ShortPassesAtTheBeginningGoWithoutAnEstimate) {
+    const RenderResult result = rendered(bare(), 32, 0);
+    std::vector<std::uint32_t> estimated;
+    for (const RenderProgress& pass : result.passes)
+        if (std::isfinite(pass.relmse))
+            estimated.push_back(pass.samples);
+    EXPECT_EQ(estimated, (std::vector<std::uint32_t>{8, 32}));
+    EXPECT_EQ(result.relmse, result.passes.back().relmse);
+}
+
 } // namespace
 } // namespace reradiant

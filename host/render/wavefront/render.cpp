@@ -4,6 +4,7 @@
 #include "host/render/wavefront/render_run.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace reradiant {
 
@@ -18,17 +19,32 @@ std::uint32_t usual_pass(std::uint32_t done) {
     return std::max(std::clamp<std::uint32_t>(done, 1, samples_in_pass), done / 16);
 }
 
-/// A usual pass, but none longer than the time between two checkpoints.
+/// A usual pass, but not far beyond where the estimated error is likely to be the one that is asked
+/// for. Pairs, so that both halves stay equal.
+std::uint32_t wanted_pass(const RenderProgress& state, const RenderOptions& options) {
+    const std::uint32_t usual = usual_pass(state.samples);
+    if (!(options.relmse > 0.0 && std::isfinite(state.relmse)))
+        return usual;
+    constexpr double slope = 1.2; // of the error of a low-discrepancy sequence
+    const double missing =
+        state.samples * (std::pow(state.relmse / options.relmse, 1.0 / slope) - 1.0);
+    // adaptive samples bring several times what even ones do at first
+    const double most = std::max(options.adaptive ? missing / 3.0 : missing, state.samples / 8.0);
+    return most < usual ? 2 * std::max(1u, static_cast<std::uint32_t>(std::ceil(0.5 * most)))
+                        : usual;
+}
+
+/// A wanted pass, but none longer than the time between two checkpoints.
 std::uint32_t next_pass(const RenderProgress& state, const RenderOptions& options) {
     const std::uint32_t done = state.samples;
-    std::uint32_t size = usual_pass(done);
+    std::uint32_t size = wanted_pass(state, options);
     const double affordable = done * options.checkpoint_seconds / std::max(state.seconds, 1e-9);
     if (!options.checkpoint.empty() && done > 0 && affordable < size)
         size = std::max(1u, static_cast<std::uint32_t>(affordable));
     return std::min(size, options.samples - done);
 }
 
-/// Returns where the samples of the next pass go, which is as large as a usual one. This does not
+/// Returns where the samples of the next pass go, which is as large as a wanted one. This does not
 /// depend on how long earlier passes took, so that a resumed render takes the same samples.
 std::vector<AdaptiveGroup> adaptive_pass(RenderRun& rendering, const Scene& scene,
                                          const RenderOptions& options) {
@@ -38,7 +54,7 @@ std::vector<AdaptiveGroup> adaptive_pass(RenderRun& rendering, const Scene& scen
     std::vector<AdaptiveGroup> groups;
     rendering.wavefront().film().read([&](FilmSums film) {
         const std::uint64_t left = pixels * options.samples - samples_of(film);
-        const std::uint64_t usual = pixels * usual_pass(rendering.state().samples);
+        const std::uint64_t usual = pixels * wanted_pass(rendering.state(), options);
         groups = adaptive_groups(film, errors, scene.film.width, scene.film.height,
                                  options.first_sample, std::min(usual, left), left);
     });

@@ -15,6 +15,12 @@ namespace {
 constexpr std::size_t scalar_group = 32;
 constexpr std::size_t vector_group = 8;
 
+/// Paths whose random numbers a work-item of `generate` and `shade` makes at once. A CPU has the
+/// vectors for them; where work-items share the lanes of a wide processor each has a path.
+std::uint32_t together_on(const DeviceInfo& device) {
+    return device.type == "CPU" ? 16 : 1;
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -56,7 +62,8 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Rende
                      const SceneTables& scene, int threads, const RaySink& on_rays,
                      BuildStatistics& build)
     : device_(device), geometry_(geometry), on_rays_(on_rays), threads_(threads),
-      depths_(plan.depths), walks_(plan.features.walk), render_(render_record(plan, scene)) {
+      depths_(plan.depths), paths_together_(together_on(device.info())), walks_(plan.features.walk),
+      render_(render_record(plan, scene)) {
     opencl_checked("setting up the renderer", [&] {
         build_kernels(plan.features, build);
         buffers_ = {device, plan, scene};
@@ -66,12 +73,14 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Rende
 }
 
 void Wavefront::build_kernels(const RenderFeatures& features, BuildStatistics& build) {
-    const KernelDefines defines = features.defines();
+    KernelDefines defines = features.defines();
+    defines.emplace_back("PATHS_TOGETHER", paths_together_);
     const auto kernel = [&](const char* file, const char* name, std::size_t group) {
         return Kernel(build_program(device_, file, defines, &build), name, group);
     };
-    generate_ = kernel("kernels/generate.cl", "generate", scalar_group);
-    shade_ = kernel("kernels/shade.cl", "shade", scalar_group);
+    const std::size_t spans = std::max<std::size_t>(scalar_group / paths_together_, 1);
+    generate_ = kernel("kernels/generate.cl", "generate", spans);
+    shade_ = kernel("kernels/shade.cl", "shade", spans);
     gather_ = kernel("kernels/gather.cl", "gather", vector_group);
     film_kernel_ = kernel("kernels/film.cl", "film", vector_group);
 }
@@ -152,11 +161,15 @@ bool Wavefront::walks_fit() {
     return false;
 }
 
+std::size_t Wavefront::spans_of(std::uint32_t paths) const {
+    return (paths + paths_together_ - 1) / paths_together_;
+}
+
 void Wavefront::generate(const Batch& work) {
     const RenderRecord& render = render_;
     const BatchRecord& batch = work.record;
     generate_.bind(BOUND(GENERATE_ARGUMENTS));
-    launch(generate_, work.paths(), statistics_.generate_seconds);
+    launch(generate_, spans_of(work.paths()), statistics_.generate_seconds);
 }
 
 /// Maps the list of the paths that reach a depth.
@@ -233,7 +246,7 @@ void Wavefront::shade(std::uint32_t depth) {
     const DepthRecord now{depth, live_count_[depth % 2],
                           static_cast<std::uint32_t>(buffers_.walk_chunks.size())};
     shade_.bind(BOUND(SHADE_ARGUMENTS));
-    launch(shade_, now.live_paths, statistics_.shade_seconds);
+    launch(shade_, spans_of(now.live_paths), statistics_.shade_seconds);
 }
 
 void Wavefront::gather(const Batch& work) {

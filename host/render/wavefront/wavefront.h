@@ -64,6 +64,8 @@ private:
     void trace_batch(const Batch& work);
     void trace_paths(const Batch& work);
     bool walks_fit();
+    /// Work-items for so many paths.
+    std::size_t spans_of(std::uint32_t paths) const;
     void generate(const Batch& work);
     void keep_live(const Batch& work, std::uint32_t depth);
     void trace(const Batch& work, std::uint32_t depth);
@@ -80,7 +82,8 @@ private:
     const Geometry& geometry_;
     RaySink on_rays_;
     int threads_;
-    std::uint32_t depths_; ///< rays of a path at most
+    std::uint32_t depths_;         ///< rays of a path at most
+    std::uint32_t paths_together_; ///< of a work-item
     bool walks_;
     RenderRecord render_;
     WavefrontStatistics statistics_;
