@@ -52,6 +52,7 @@ void intersect_callback(const RTCIntersectFunctionNArguments* arguments) {
     const unsigned int count = arguments->N;
     RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, count);
     RTCHitN* hits = RTCRayHitN_HitN(arguments->rayhit, count);
+    double* distances = reinterpret_cast<PacketContext*>(arguments->context)->distances;
     for (unsigned int i = 0; i < count; ++i) {
         if (arguments->valid[i] == 0)
             continue;
@@ -59,6 +60,7 @@ void intersect_callback(const RTCIntersectFunctionNArguments* arguments) {
         if (t < 0.0)
             continue;
         RTCRayN_tfar(rays, count, i) = static_cast<float>(t);
+        distances[RTCRayN_id(rays, count, i)] = t;
         RTCHitN_geomID(hits, count, i) = arguments->geomID;
         RTCHitN_primID(hits, count, i) = arguments->primID;
         RTCHitN_instID(hits, count, i, 0) = arguments->context->instID[0];

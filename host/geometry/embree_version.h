@@ -13,11 +13,26 @@ namespace reradiant {
 /// Rays are traced so many at a time; a device without vectors so wide takes them one by one.
 inline constexpr int packet_rays = 16;
 
+/// What callbacks of a query see: where they leave the distance of each ray's nearest hit, by its
+/// id, in double precision.
+struct PacketContext {
+#if RERADIANT_EMBREE_MAJOR >= 4
+    RTCRayQueryContext embree;
+#else
+    RTCIntersectContext embree;
+#endif
+    double* distances;
+};
+
 #if RERADIANT_EMBREE_MAJOR >= 4
 
-inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& packet, bool coherent) {
+inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& packet, bool coherent,
+                             double* distances) {
+    PacketContext context{{}, distances};
+    rtcInitRayQueryContext(&context.embree);
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
+    arguments.context = &context.embree;
     arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
     rtcIntersect16(valid, scene, &packet, &arguments);
 }
@@ -30,12 +45,13 @@ inline void embree_occluded(RTCScene scene, const int* valid, RTCRay16& packet) 
 
 #else
 
-inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& packet, bool coherent) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags =
+inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& packet, bool coherent,
+                             double* distances) {
+    PacketContext context{{}, distances};
+    rtcInitIntersectContext(&context.embree);
+    context.embree.flags =
         coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcIntersect16(valid, scene, &context, &packet);
+    rtcIntersect16(valid, scene, &context.embree, &packet);
 }
 
 inline void embree_occluded(RTCScene scene, const int* valid, RTCRay16& packet) {

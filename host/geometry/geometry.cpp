@@ -62,7 +62,8 @@ public:
         rays.tfar[k] = r.t_far;
         rays.time[k] = 0.0f;
         rays.mask[k] = 0xffffffffu;
-        rays.flags[k] = rays.id[k] = 0;
+        rays.flags[k] = 0;
+        rays.id[k] = static_cast<unsigned int>(k);
         valid_[k] = -1;
         places_[k] = place;
     }
@@ -156,7 +157,8 @@ struct Geometry::Implementation {
     /// Marks those of the listed rays that something blocks; returns how many were active.
     std::uint64_t block(const RaysToBlock& rays, std::size_t begin, std::size_t end) const;
     void block(const RaysToBlock& rays, Packet<RTCRay16>& packet) const;
-    HitRecord describe(const RayRecord& record, const RTCRayHit16& found, std::size_t k) const;
+    HitRecord describe(const RayRecord& record, const RTCRayHit16& found, std::size_t k,
+                       double distance) const;
     template <typename Primitive>
     HitRecord describe(const OwnedPrimitives<Primitive>& owned, unsigned int index, Ray ray,
                        double t) const;
@@ -254,26 +256,23 @@ template <typename Primitive>
 HitRecord Geometry::Implementation::describe(const OwnedPrimitives<Primitive>& owned,
                                              unsigned int index, Ray ray, double t) const {
     const Primitive& primitive = owned.primitives[index];
-    // Embree keeps t in single precision; the primitive knows it better.
-    const double exact = primitive.intersect(ray);
-    SurfaceHit hit = primitive.describe(ray, exact >= 0.0 ? exact : t);
+    SurfaceHit hit = primitive.describe(ray, t);
     if (parameters)
         primitive.set_parameters(hit);
     return record_of(hit, owned.owners[index]);
 }
 
 HitRecord Geometry::Implementation::describe(const RayRecord& record, const RTCRayHit16& found,
-                                             std::size_t k) const {
+                                             std::size_t k, double distance) const {
     const unsigned int index = found.hit.primID[k];
     const Ray ray = ray_of(record);
-    const double t = found.ray.tfar[k];
     const void* source = sources[found.hit.geomID[k]];
     if (source == &surfaces.spheres)
-        return describe(surfaces.spheres, index, ray, t);
+        return describe(surfaces.spheres, index, ray, distance);
     if (source == &surfaces.rectangles)
-        return describe(surfaces.rectangles, index, ray, t);
+        return describe(surfaces.rectangles, index, ray, distance);
     if (source == &surfaces.disks)
-        return describe(surfaces.disks, index, ray, t);
+        return describe(surfaces.disks, index, ray, distance);
     const auto& owned = *static_cast<const OwnedMesh*>(source);
     const TrianglePrimitive triangle = triangle_of(owned.mesh, index);
     const auto barycentric = triangle.barycentric(ray, {found.hit.u[k], found.hit.v[k]});
@@ -299,13 +298,14 @@ void Geometry::Implementation::hit(const RaysToHit& rays, std::size_t begin,
 void Geometry::Implementation::hit(const RaysToHit& rays, Packet<RTCRayHit16>& packet) const {
     RTCRayHit16& found = packet.rays();
     std::fill_n(found.hit.geomID, packet_rays, RTC_INVALID_GEOMETRY_ID);
-    embree_intersect(scene, packet.valid(), found, rays.coherent);
+    std::array<double, packet_rays> distances{}; // of shapes that are no meshes
+    embree_intersect(scene, packet.valid(), found, rays.coherent, distances.data());
     for (int i = 0; i < packet.count(); ++i) {
         const auto k = static_cast<std::size_t>(i);
         const std::uint32_t place = packet.place(i);
         rays.hits[place] = found.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
                                ? no_hit()
-                               : describe(rays.rays[place], found, k);
+                               : describe(rays.rays[place], found, k, distances[k]);
     }
     packet.clear();
 }
