@@ -24,7 +24,10 @@
 void walk_connect_at_facets(Walk* walk, WalkSurface surface, const WalkArrival* light, int beyond,
                             float density) {
     const uint medium = walk->at.medium + (beyond ? 1u : 0u); // beyond is below
-    const float chance = walk_chance_at_facets(surface, walk->at.v, light->v, beyond);
+    // only the walk between Smith's facets has another density than that of its first facet
+    const int is_smith = surface.multiple && surface.distribution != MICROFACET_BLINN;
+    const float chance =
+        is_smith ? walk_chance_at_facets(surface, walk->at.v, light->v, beyond) : density;
     walk_connect(walk, light, density * walk_connection_share(walk, light, medium, chance));
 }
 
