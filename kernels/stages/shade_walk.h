@@ -21,6 +21,7 @@ Walk walk_of(const ShadeScene* scene, MaterialRecord material, const ShadeStep* 
     walk.stack.tables = scene->tables;
     walk.stack.count = material.layer_count;
     walk.stack.sigma = material.sigma;
+    walk.light_pdf = walk.light_cosine = 0.0f;
     walk.writer = walk_writer(scene->walk_chunks, scene->walk_chunks_used, scene->walk_room);
     walk.random =
         walk_random(step->state.pixel, step->state.sample,
@@ -40,9 +41,12 @@ static void shade_walk(const ShadeScene* scene, SurfacePoint point, MaterialReco
     if (scene->render.sampled_lights > 0u) {
         Vec3 wi;
         const LightSample sample = look_for_light(scene, point, u_light, &wi, step);
-        if (sample.weight > 0.0f)
-            walk_light(walk.stack, wi, sample.weight / scene->lights[step->vertex.light].selection,
-                       &walk.random, arrivals);
+        if (sample.weight > 0.0f) {
+            const real selection = scene->lights[step->vertex.light].selection;
+            walk.light_pdf = selection * sample.pdf;
+            walk.light_cosine = wi.z;
+            walk_light(walk.stack, wi, sample.weight / selection, &walk.random, arrivals);
+        }
     }
 #endif
     const WalkEnd end = walk_stack(&walk, point.wo);
@@ -53,7 +57,7 @@ static void shade_walk(const ShadeScene* scene, SurfacePoint point, MaterialReco
     if (end.weight > 0.0f && u < survival && vec3_dot(point.geometric, direction) > 0.0f) {
         step->vertex.has_next = 1u;
         step->state.throughput /= survival;
-        step->state.bsdf_pdf = end.is_delta ? -1.0f : 0.0f; // 0: lights are left to connections
+        step->state.bsdf_pdf = end.pdf;
         step->next = ray_from(step->hit, direction, INFINITY);
     }
     const WalkVertexRecord kept = {walk.writer.chunk, walk.writer.count, walk.reference,

@@ -20,6 +20,17 @@
 #include "kernels/walk/walk_slab.h"
 #include "kernels/walk/walk_state.h"
 
+/// Connects an interface that the walk stands at to light on this side or beyond.
+void walk_connect_at_facets(Walk* walk, WalkSurface surface, const WalkArrival* light, int beyond,
+                            float density) {
+    const uint medium = walk->at.medium + (beyond ? 1u : 0u); // beyond is below
+    // only the walk between Smith's facets has another density than that of its first facet
+    const int is_smith = surface.multiple && surface.distribution != MICROFACET_BLINN;
+    const float chance =
+        is_smith ? walk_chance_at_facets(surface, walk->at.v, light->v, beyond) : density;
+    walk_connect(walk, light, density * walk_connection_share(walk, light, medium, chance));
+}
+
 /// An interface; returns 0 where the walk ends.
 int walk_meets_interface(Walk* walk) {
     const uint k = walk_interface_ahead(walk->at);
@@ -36,15 +47,19 @@ int walk_meets_interface(Walk* walk) {
         targets.same = same->v;
         targets.beyond = below->v;
     }
-    const WalkDeparture departure = walk_interface(surface, walk->at.v, targets, &walk->random);
+    const Vec3 v = walk->at.v;
+    const WalkDeparture departure = walk_interface(surface, v, targets, &walk->random);
     if (targets.has_same)
-        walk_connect(walk, same, departure.same_density);
+        walk_connect_at_facets(walk, surface, same, 0, departure.same_density);
     if (targets.has_beyond)
-        walk_connect(walk, below, departure.beyond_density);
-    walk->is_delta = walk->is_delta && !is_rough;
+        walk_connect_at_facets(walk, surface, below, 1, departure.beyond_density);
     walk->weight *= departure.weight;
     walk_go_on(&walk->at, departure);
-    return walk->weight > 0.0f && walk->at.v.z > 0.0f;
+    if (!(walk->weight > 0.0f && walk->at.v.z > 0.0f))
+        return 0;
+    if (is_rough && (down || !departure.passed))
+        walk_leaves(walk, walk_chance_at_facets(surface, v, departure.direction, departure.passed));
+    return 1;
 }
 
 /// A diffuse substrate: M is an event, cos / pi or Oren and Nayar's shape are weights.
@@ -63,11 +78,14 @@ int walk_meets_diffuse(Walk* walk) {
 #endif
     walk_write(&walk->writer, WALK_CODE(WALK_SUBSTRATE, 0u), 1.0f);
     if (light->fluence > 0.0f)
-        walk_connect(walk, light, towards_light * light->v.z);
-    walk->is_delta = 0;
+        walk_connect(
+            walk, light,
+            towards_light * light->v.z *
+                walk_connection_share(walk, light, walk->at.medium, INV_PI_REAL * light->v.z));
     walk->weight *= departure.weight;
     walk->expected *= departure.weight * walk->stack.parts[walk->stack.count].albedo;
     walk_go_on(&walk->at, departure);
+    walk_leaves(walk, INV_PI_REAL * walk->at.v.z);
     return walk->weight > 0.0f && walk->at.v.z > 0.0f && walk_survives(walk);
 }
 
@@ -122,13 +140,14 @@ WalkEnd walk_stack(Walk* walk, Vec3 wo) {
     walk->at.down = 1;
     walk->weight = walk->expected = 1.0f;
     walk->is_delta = 1;
+    walk->chance = 0.0f;
     walk->reference = 0u;
 #if FEATURE_SCATTERING_SLABS
     walk->reference = (uint)(walk_uniform(&walk->random) * (float)WALK_REFERENCES);
     for (uint r = 0u; r < WALK_REFERENCES; ++r)
         walk->log_densities[r] = 0.0f;
 #endif
-    WalkEnd end = {vec3(0.0f, 0.0f, 1.0f), 0.0f, 0.0f, 0};
+    WalkEnd end = {vec3(0.0f, 0.0f, 1.0f), 0.0f, 0.0f, 0.0f};
     for (walk->steps = 0u; walk->at.down || walk->at.medium > 0u; ++walk->steps) {
         const int goes_on = walk->at.down && walk->at.medium == walk->stack.count
                                 ? walk_meets_substrate(walk)
@@ -139,7 +158,7 @@ WalkEnd walk_stack(Walk* walk, Vec3 wo) {
     end.direction = vec3(-walk->at.v.x, -walk->at.v.y, walk->at.v.z);
     end.weight = walk->weight * walk_balance(walk);
     end.expected = walk->expected;
-    end.is_delta = walk->is_delta;
+    end.pdf = walk->is_delta ? -1.0f : walk->chance * end.direction.z;
     return end;
 }
 

@@ -11,11 +11,12 @@ typedef struct {
     WalkSurface surface;
     uint part;
     const WalkArrival* light;
+    float share; ///< of the light's radiance that is left to connections
 } WalkMirror;
 
 /// A facet of a conductor reflects into the light's direction.
 void walk_connect_by_facet(Walk* walk, WalkMirror mirror, Vec3 v, float density) {
-    if (walk_connect(walk, mirror.light, density))
+    if (walk_connect(walk, mirror.light, density * mirror.share))
         walk_write(&walk->writer, WALK_CODE(WALK_LIGHT_REFLECT, mirror.part),
                    vec3_dot(v, walk_half_reflected(v, mirror.light->v)));
 }
@@ -55,7 +56,8 @@ int walk_cavity_conductor(Walk* walk, WalkMirror mirror, WalkDeparture* departur
     const float cosine = walk->at.v.z, lost = walk_cavity_lost(mirror.surface, 0, cosine);
     walk_connect_one_facet(walk, mirror);
     if (walk_connect(walk, mirror.light,
-                     walk_cavity_density(mirror.surface, cosine, 0, mirror.light->v.z)))
+                     mirror.share *
+                         walk_cavity_density(mirror.surface, cosine, 0, mirror.light->v.z)))
         walk_write(&walk->writer, WALK_CODE(WALK_LIGHT_BOUNCE, mirror.part), 0.0f);
     if (!(walk_uniform(&walk->random) < lost)) {
         walk->weight /= 1.0f - lost;
@@ -93,7 +95,10 @@ int walk_smith_conductor(Walk* walk, WalkMirror mirror, WalkDeparture* departure
 }
 
 int walk_rough_conductor(Walk* walk, WalkMirror mirror, WalkDeparture* departure) {
-    walk->is_delta = 0;
+    if (mirror.light->fluence > 0.0f)
+        mirror.share = walk_connection_share(
+            walk, mirror.light, walk->at.medium,
+            walk_chance_at_facets(mirror.surface, walk->at.v, mirror.light->v, 0));
     if (!mirror.surface.multiple)
         return walk_single_conductor(walk, mirror, departure);
     return mirror.surface.distribution == MICROFACET_BLINN
@@ -103,16 +108,23 @@ int walk_rough_conductor(Walk* walk, WalkMirror mirror, WalkDeparture* departure
 
 /// A conductor, lit from `place`.
 int walk_meets_conductor(Walk* walk, uint part, uint place) {
-    const WalkMirror mirror = {walk_surface(walk->stack, part, 0), part, walk->arrivals + place};
+    const WalkMirror mirror = {walk_surface(walk->stack, part, 0), part, walk->arrivals + place,
+                               1.0f};
+    const Vec3 v = walk->at.v;
+    const int is_rough = mirror.surface.alpha > 0.0f;
     WalkDeparture departure = walk_departure();
-    if (!(mirror.surface.alpha > 0.0f)) {
-        departure.direction = vec3(-walk->at.v.x, -walk->at.v.y, walk->at.v.z);
-        walk_reflect_by_facet(walk, part, walk->at.v.z);
+    if (!is_rough) {
+        departure.direction = vec3(-v.x, -v.y, v.z);
+        walk_reflect_by_facet(walk, part, v.z);
     } else if (!walk_rough_conductor(walk, mirror, &departure)) {
         return 0;
     }
     walk_go_on(&walk->at, departure);
-    return walk->weight > 0.0f && walk->at.v.z > 0.0f && walk_survives(walk);
+    if (!(walk->weight > 0.0f && walk->at.v.z > 0.0f))
+        return 0;
+    if (is_rough)
+        walk_leaves(walk, walk_chance_at_facets(mirror.surface, v, departure.direction, 0));
+    return walk_survives(walk);
 }
 
 /// Returns whether the walk meets a flake where it comes to the end of its slab, or sets out from

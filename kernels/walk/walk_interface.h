@@ -94,20 +94,26 @@ DEVICE_FUNCTION WalkDeparture walk_smooth(WalkSurface surface, Vec3 v, WalkRando
     return departure;
 }
 
-/// Densities of `single` towards the targets: those of the facets times their masking.
+/// Density of `single` towards w, which is in the frame of its side, beyond the interface where
+/// `passed`: that of the facets times their masking, 1/sr with the cosine of w.
+DEVICE_FUNCTION real walk_single_density(WalkSurface surface, Vec3 v, Vec3 w, int passed) {
+    if (passed) {
+        const Vec3 beyond = walk_mirrored(w);
+        const WalkRefraction r = walk_refraction(surface, v, beyond);
+        return walk_single_refraction(surface, v, beyond, r,
+                                      REAL(1.0) - walk_reflectance(surface, r.cos_i));
+    }
+    return walk_single_reflection(
+        surface, v, w, walk_reflectance(surface, vec3_dot(v, walk_half_reflected(v, w))));
+}
+
+/// Densities of `single` towards the targets.
 DEVICE_FUNCTION void walk_single_densities(WalkSurface surface, Vec3 v, WalkTargets targets,
                                            WalkDeparture* departure) {
-    if (targets.has_same) {
-        const Vec3 h = walk_half_reflected(v, targets.same);
-        departure->same_density = walk_single_reflection(surface, v, targets.same,
-                                                         walk_reflectance(surface, vec3_dot(v, h)));
-    }
-    if (targets.has_beyond) {
-        const Vec3 w = walk_mirrored(targets.beyond);
-        const WalkRefraction r = walk_refraction(surface, v, w);
-        departure->beyond_density = walk_single_refraction(
-            surface, v, w, r, REAL(1.0) - walk_reflectance(surface, r.cos_i));
-    }
+    if (targets.has_same)
+        departure->same_density = walk_single_density(surface, v, targets.same, 0);
+    if (targets.has_beyond)
+        departure->beyond_density = walk_single_density(surface, v, targets.beyond, 1);
 }
 
 /// Reflects or refracts a walk at one facet; what other facets mask is lost (Walter et al. 2007).

@@ -7,11 +7,11 @@
 // surface. The first event that is neither is the connection: a reflection by a rough interface, a
 // meeting of light that comes from below with a rough interface, scattering in a slab, a diffuse or
 // rough substrate. The camera's half evaluates it towards the direction in which the light arrives
-// there, and takes all that follows. So every path that has a connection is counted once, by
+// there, and takes all that follows. So every path that has a connection is counted once by
 // next-event estimation; a path without any met smooth surfaces alone (what comes down through a
-// rough interface must go up through it again) and counts when the camera's own direction finds the
-// light. No two estimators share a path: nothing is weighted. A rough interface that is almost
-// smooth makes this noisy, not wrong.
+// rough interface must go up through it again). The camera's own direction finds paths of both
+// kinds: those without a connection count in full there, the others share their light with the
+// connections (walk_chance.h), which would be few and large where a rough surface is almost smooth.
 #ifndef RERADIANT_WALK_LIGHT_H
 #define RERADIANT_WALK_LIGHT_H
 

@@ -16,9 +16,10 @@ void walk_connect_in_slab(Walk* walk, uint k, float height, Vec3 back) {
             continue;
         const Vec3 l = down ? light->v : walk_mirrored(light->v);
         // light comes along -l and leaves along `back`
-        if (walk_connect(
-                walk, light,
-                henyey_greenstein_phase(walk->stack.parts[k].anisotropy, -vec3_dot(l, back))))
+        const float density =
+            henyey_greenstein_phase(walk->stack.parts[k].anisotropy, -vec3_dot(l, back));
+        if (walk_connect(walk, light,
+                         density * walk_connection_share(walk, light, walk->at.medium, density)))
             walk_write(&walk->writer, WALK_CODE(WALK_LIGHT_PASS, k),
                        (down ? height : 1.0f - height) / light->v.z);
     }
@@ -53,7 +54,7 @@ int walk_scatter_in_slab(Walk* walk, uint k, WalkPartRecord part) {
         const Vec3 w = henyey_greenstein_sample(vec3_scale(back, -1.0f), part.anisotropy, u1, u2);
         walk->at.down = w.z < 0.0f;
         walk->at.v = vec3(-w.x, -w.y, fabs(w.z));
-        walk->is_delta = 0;
+        walk_leaves(walk, henyey_greenstein_phase(part.anisotropy, -vec3_dot(w, back)));
         walk->expected *= part.albedo;
         ++walk->steps;
         if (!(walk->at.v.z > 0.0f) || !walk_survives(walk))

@@ -5,6 +5,8 @@
 #include "kernels/core/features.h"
 #include "kernels/core/portable.h"
 #include "kernels/core/shared.h"
+#include "kernels/scene/lights.h"
+#include "kernels/walk/walk_chance.h"
 #include "kernels/walk/walk_events.h"
 #include "kernels/walk/walk_interface.h"
 #include "kernels/walk/walk_light.h"
@@ -22,11 +24,14 @@ typedef struct {
     WalkStack stack;
     WalkPosition at;
     const WalkArrival* arrivals; ///< of the light (WALK_PLACES)
+    float light_pdf;             ///< of the light's direction; 0: chance cannot meet the light
+    float light_cosine;          ///< of the light's direction in air
     WalkWriter writer;
     WalkRandom random;
     real weight;
     float expected; ///< weight times what events leave of the lane that keeps most
     int is_delta;   ///< smooth surfaces alone so far
+    float chance;   ///< of the event that a light met by chance is shared at (walk_chance.h)
     uint steps;
     uint reference; ///< which extinction scattering distances are sampled with
     float log_densities[WALK_REFERENCES]; ///< of all distances so far, under each
@@ -38,7 +43,7 @@ typedef struct {
     Vec3 direction;
     float weight; ///< 0: it ended inside
     float expected;
-    int is_delta;
+    float pdf; ///< what stands for that of the direction, as connections know it; -1: a delta's
 } WalkEnd;
 
 /// The balance heuristic over the extinctions that the walk might have taken (one is drawn per
@@ -52,6 +57,28 @@ float walk_balance(const Walk* walk) {
 #else
     return 1.0f;
 #endif
+}
+
+/// The walk has left a rough surface, the substrate or a scattering event with a density, and is in
+/// the medium that it left to.
+void walk_leaves(Walk* walk, float density) {
+    walk->is_delta = 0;
+#if FEATURE_LIGHTS_MET
+    walk->chance = walk_chance_below(density, walk_ior(walk->stack, walk->at.medium), walk->at.v.z);
+#endif
+}
+
+/// The connection's share of the light that comes from `light` in a medium, at an event that leaves
+/// towards it with the density `chance`.
+float walk_connection_share(const Walk* walk, const WalkArrival* light, uint medium, float chance) {
+#if FEATURE_LIGHTS_MET
+    if (walk->light_pdf > 0.0f)
+        return lights_mis_weight(
+            walk->light_pdf,
+            walk->light_cosine *
+                walk_chance_below(chance, walk_ior(walk->stack, medium), light->v.z));
+#endif
+    return 1.0f;
 }
 
 /// Records that the light's arrival is seen from here with a density (1/sr, cosine included).

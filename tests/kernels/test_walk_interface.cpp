@@ -1,3 +1,4 @@
+#include "kernels/walk/walk_chance.h"
 #include "kernels/walk/walk_interface.h"
 #include "kernels/walk/walk_microsurface.h"
 #include "tests/kernels/probe.h"
@@ -115,6 +116,30 @@ TEST(KernelWalk, MultipleScatteringHasTheSharesOfAnIndependentWalk) {
         const double error = std::sqrt(transmitted * (1.0 - transmitted) / count);
         EXPECT_NEAR(found.passed, transmitted, 5.5 * error + 1e-4) << degrees;
     }
+}
+
+/// What a passage makes of a bundle of directions on the way up, it undoes on the way down: the
+/// ratio of the two densities is the one by which chance below counts in air.
+TEST(KernelWalk, PassagesUpAndDownDifferByTheBundleOfDirections) {
+    Source source(41);
+    int passages = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const double ior = source.uniform(1.1, 2.4);
+        const WalkSurface above = surface_of(i % 3, source.uniform(0.1, 0.9), ior, false);
+        std::vector<float> numbers;
+        source.push_direction(numbers);
+        source.push_direction(numbers);
+        const Vec3 air = kernels::vec3_normalise(vec3(numbers[0], numbers[1], numbers[2]));
+        const Vec3 below = kernels::vec3_normalise(vec3(numbers[3], numbers[4], numbers[5]));
+        const double down = walk_single_density(above, air, below, 1);
+        const double up = walk_single_density(walk_from_beyond(above), below, air, 1);
+        if (below.z < 1e-6)
+            continue;
+        const double ratio = air.z * kernels::walk_chance_below(1.0, ior, below.z);
+        EXPECT_LT(relative_difference(up, ratio * down, 1e-12), 1e-6) << i;
+        passages += up > 1e-3;
+    }
+    EXPECT_GT(passages, 2000);
 }
 
 /// Densities towards uniform directions integrate to the shares that are sampled: value and
