@@ -1,9 +1,9 @@
 #include "host/layers/models/effective_matrix.h"
 
+#include "host/spectral/matrix/linear_systems.h"
 #include "reradiant/error.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -76,7 +76,7 @@ Eigen::MatrixXd effective_matrix(const Eigen::MatrixXd& per_band, const Eigen::V
     if (!(radius < 1.0 - 1e-12))
         throw_diverges(radius);
     const Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n, n) - feedback;
-    return system.transpose().partialPivLu().solve(per_band.transpose()).transpose();
+    return right_quotient(per_band, system);
 }
 
 Eigen::MatrixXd SemiseparableMatrix::dense() const {
