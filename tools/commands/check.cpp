@@ -99,28 +99,28 @@ int run_check(const CheckCommandOptions& options, const CommonOptions& common) {
 
 } // namespace
 
-void add_check_command(CLI::App& program, CommandContext& context) {
+void add_check_command(Program& program, CommandContext& context) {
     auto options = std::make_shared<CheckCommandOptions>();
-    CLI::App* const command = program.add_subcommand(
+    Command command = program.add_command(
         "check", "Runs every device function on the device against double precision, over hard "
                  "and random inputs: errors, budgets of the OpenCL specification, speed; exit 3 "
                  "when one fails");
-    command->add_option("--samples", options->check.samples, "random inputs a function")
-        ->check(CLI::Range(std::size_t{1000}, std::size_t{1} << 32U))
-        ->capture_default_str();
-    command->add_option("--only", options->check.only, "functions with this in their name");
-    command->add_flag("--double", options->check.in_double,
-                      "build the functions in double too: what single precision costs and saves");
-    command->add_option("--save", options->save, "write the results, for --against");
-    command->add_option("--against", options->against,
-                        "fail too when a result moved by more than its budget since --save");
-    command->footer("budget: largest error over what OpenCL allows there; open: share that a "
-                    "comparison decides.\n"
-                    "Examples:\n"
-                    "  reradiant check --only fresnel\n"
-                    "  reradiant check --save before.json\n"
-                    "  reradiant check --against before.json");
-    command->callback(
+    command.option("--samples", options->check.samples, "random inputs a function")
+        .in_range(std::size_t{1000}, std::size_t{1} << 32U)
+        .show_default();
+    command.option("--only", options->check.only, "functions with this in their name");
+    command.flag("--double", options->check.in_double,
+                 "build the functions in double too: what single precision costs and saves");
+    command.option("--save", options->save, "write the results, for --against");
+    command.option("--against", options->against,
+                   "fail too when a result moved by more than its budget since --save");
+    command.footer("budget: largest error over what OpenCL allows there; open: share that a "
+                   "comparison decides.\n"
+                   "Examples:\n"
+                   "  reradiant check --only fresnel\n"
+                   "  reradiant check --save before.json\n"
+                   "  reradiant check --against before.json");
+    command.callback(
         [options, &context] { context.exit_code = run_check(*options, context.common); });
 }
 

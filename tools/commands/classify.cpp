@@ -152,22 +152,22 @@ int run_classify(const ClassifyOptions& options, const CommonOptions& common) {
 
 } // namespace
 
-void add_classify_command(CLI::App& program, CommandContext& context) {
+void add_classify_command(Program& program, CommandContext& context) {
     auto options = std::make_shared<ClassifyOptions>();
-    CLI::App* const command = program.add_subcommand(
+    Command command = program.add_command(
         "classify", "Finds the class, presets and starting parameters of a material by its looks");
     for (std::size_t i = 0; i < QUESTION_COUNT; ++i) {
         const QuestionText& text = question_texts().at(i);
-        command->add_option(
+        command.option(
             fmt::format("--{}", text.option), options->answers.at(i),
             fmt::format("{} yes or no; asked at a terminal when left out", text.sentence));
     }
-    command->add_option("--class", options->letter, "leave out the questions: a class a to h")
-        ->check(CLI::IsMember({"a", "b", "c", "d", "e", "f", "g", "h"}));
-    command->add_option("-o,--output", options->output,
-                        "write the starting parameters as MATERIAL.toml");
-    command->footer(TREE);
-    command->callback(
+    command.option("--class", options->letter, "leave out the questions: a class a to h")
+        .one_of({"a", "b", "c", "d", "e", "f", "g", "h"});
+    command.option("-o,--output", options->output,
+                   "write the starting parameters as MATERIAL.toml");
+    command.footer(TREE);
+    command.callback(
         [options, &context] { context.exit_code = run_classify(*options, context.common); });
 }
 

@@ -220,37 +220,36 @@ int run_colour(ColourOptions options, const CommonOptions& common) {
 
 } // namespace
 
-void add_colour_command(CLI::App& program, CommandContext& context) {
+void add_colour_command(Program& program, CommandContext& context) {
     auto options = std::make_shared<ColourOptions>();
-    CLI::App* const command = program.add_subcommand(
+    Command command = program.add_command(
         "colour", "Colour of a re-radiation matrix: XYZ, xy, Lab, whiteness, radiance factors");
-    command->add_option("MATRIX", options->matrix, "re-radiation matrix (.csv, .bfc, .exr)")
-        ->required();
+    command.option("MATRIX", options->matrix, "re-radiation matrix (.csv, .bfc, .exr)").required();
     command
-        ->add_option("--illuminant", options->illuminants,
-                     "CIE illuminants: D65,A,FL2,LED-B3; an unknown name lists them all")
-        ->capture_default_str();
-    CLI::Option* const e308 = command->add_flag(
+        .option("--illuminant", options->illuminants,
+                "CIE illuminants: D65,A,FL2,LED-B3; an unknown name lists them all")
+        .show_default();
+    const CommandOption e308 = command.flag(
         "--e308", options->e308,
         "sums over 1 nm between the bands (ASTM E308, E2022), for every lamp; by default they are "
         "plain sums at the bands (ASTM E2152) unless these misjudge the lamp itself by over 0.2 %");
-    command->add_flag("--plain-sums", options->plain, "plain sums at the bands, for every lamp")
-        ->excludes(e308);
-    command->add_option("--against", options->against,
-                        "CIEDE2000 to the colour of this matrix, under each illuminant");
-    command->add_option("--polygons", options->polygons,
-                        "CSV of chromaticity regions and luminance factors to test against, for "
-                        "instance spectra/polygons/en-iso-20471.csv; exit with 3 when none passes");
-    command->add_flag("--table", options->table,
-                      "print the radiance factors at every wavelength, too: total, reflected, "
-                      "luminescent (the JSON has them anyway)");
-    command->add_option("--plot", options->plot,
-                        "write the radiance factors as an SVG plot, with --against of both");
-    command->footer("Examples:\n"
-                    "  reradiant colour paint.bfc --illuminant D65,A --json colour.json\n"
-                    "  reradiant colour vest.csv --polygons spectra/polygons/en-iso-20471.csv\n"
-                    "  reradiant colour fit.csv --against data.csv --plot factors.svg");
-    command->callback(
+    command.flag("--plain-sums", options->plain, "plain sums at the bands, for every lamp")
+        .excludes(e308);
+    command.option("--against", options->against,
+                   "CIEDE2000 to the colour of this matrix, under each illuminant");
+    command.option("--polygons", options->polygons,
+                   "CSV of chromaticity regions and luminance factors to test against, for "
+                   "instance spectra/polygons/en-iso-20471.csv; exit with 3 when none passes");
+    command.flag("--table", options->table,
+                 "print the radiance factors at every wavelength, too: total, reflected, "
+                 "luminescent (the JSON has them anyway)");
+    command.option("--plot", options->plot,
+                   "write the radiance factors as an SVG plot, with --against of both");
+    command.footer("Examples:\n"
+                   "  reradiant colour paint.bfc --illuminant D65,A --json colour.json\n"
+                   "  reradiant colour vest.csv --polygons spectra/polygons/en-iso-20471.csv\n"
+                   "  reradiant colour fit.csv --against data.csv --plot factors.svg");
+    command.callback(
         [options, &context] { context.exit_code = run_colour(*options, context.common); });
 }
 

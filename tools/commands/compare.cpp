@@ -3,7 +3,6 @@
 #include "reradiant/error.h"
 #include "reradiant/spectral_image.h"
 #include "tools/program/command.h"
-#include "tools/program/number_options.h"
 #include "tools/program/outputs.h"
 
 #include <fmt/format.h>
@@ -61,21 +60,20 @@ int run_compare(const CompareOptions& options, const CommonOptions& common) {
 
 } // namespace
 
-void add_compare_command(CLI::App& program, CommandContext& context) {
+void add_compare_command(Program& program, CommandContext& context) {
     auto options = std::make_shared<CompareOptions>();
-    CLI::App* const command =
-        program.add_subcommand("compare", "Compares a spectral image with a reference: relMSE, "
-                                          "RMSE, bias with its standard error, CIEDE2000");
-    command->add_option("IMAGE", options->image, "spectral EXR")->required();
-    command->add_option("REFERENCE", options->reference, "spectral EXR of the same size and bands")
-        ->required();
-    command->add_option("--max-relmse", options->max_relmse, "exit with 3 when relMSE is higher")
-        ->check(non_negative_number());
-    command->add_option(
-        "--memory-limit", options->memory_limit_bytes,
-        "refuse images that would take more bytes (default: 80 % of the machine's)");
-    command->footer("Example: reradiant compare out.exr reference.exr --max-relmse 0.01");
-    command->callback(
+    Command command =
+        program.add_command("compare", "Compares a spectral image with a reference: relMSE, "
+                                       "RMSE, bias with its standard error, CIEDE2000");
+    command.option("IMAGE", options->image, "spectral EXR").required();
+    command.option("REFERENCE", options->reference, "spectral EXR of the same size and bands")
+        .required();
+    command.option("--max-relmse", options->max_relmse, "exit with 3 when relMSE is higher")
+        .non_negative();
+    command.option("--memory-limit", options->memory_limit_bytes,
+                   "refuse images that would take more bytes (default: 80 % of the machine's)");
+    command.footer("Example: reradiant compare out.exr reference.exr --max-relmse 0.01");
+    command.callback(
         [options, &context] { context.exit_code = run_compare(*options, context.common); });
 }
 

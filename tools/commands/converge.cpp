@@ -9,7 +9,6 @@
 #include "tools/program/command.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/join_team.h"
-#include "tools/program/number_options.h"
 #include "tools/program/outputs.h"
 #include "tools/program/parse_options.h"
 
@@ -114,41 +113,40 @@ int run_converge(ConvergeCommand command, const CommandContext& context) {
 
 } // namespace
 
-void add_converge_command(CLI::App& program, CommandContext& context) {
+void add_converge_command(Program& program, CommandContext& context) {
     auto command = std::make_shared<ConvergeCommand>();
-    CLI::App* const app = program.add_subcommand(
+    Command app = program.add_command(
         "converge", "Measures error against run time: CSV, JSON, plots and a page");
-    app->add_option("SCENE", command->scene, "scene file (TOML, or XML of Mitsuba 3)")->required();
-    app->add_option("-o,--output", command->options.folder, "folder to write to")->required();
-    app->add_option(
+    app.option("SCENE", command->scene, "scene file (TOML, or XML of Mitsuba 3)").required();
+    app.option("-o,--output", command->options.folder, "folder to write to").required();
+    app.option(
            "--methods", command->methods,
            "separated by commas: a model of `render` (auto, adding, weidlich-wilkie, walk), its "
            "wavelengths (comb, comb:N, hero, hero:N), adaptive, or several in one as "
            "adding+comb:16+adaptive or hero:8+adaptive")
-        ->capture_default_str();
-    app->add_option("--reference", command->options.reference,
-                    "spectral EXR to compare with; default: one is rendered");
-    app->add_option("--spp-reference", command->options.reference_samples,
-                    "samples a pixel of the reference that is rendered; default: as many as ten "
-                    "times --time allow")
-        ->check(CLI::Range(1u, 1u << 30));
-    app->add_option("--time", command->options.time_seconds, "seconds of rendering, each method")
-        ->check(positive_number())
-        ->capture_default_str();
-    app->add_option("--bands", command->bands, "film bands in nm, FROM:TO:STEP");
-    app->add_option("--memory-limit", command->options.render.memory_limit_bytes,
-                    "refuse a render that would take more bytes (default: 80 % of the machine's)");
-    app->add_option("--checkpoint", command->options.render.checkpoint_seconds,
-                    "keep the render in progress every so many seconds")
-        ->check(positive_number())
-        ->capture_default_str();
-    app->add_flag(
-        "--resume", command->options.resume,
-        "refuse what was kept of another scene, build or device; without it such a render "
-        "begins anew");
-    app->footer("Example: reradiant converge scene.toml -o errors --methods adding,adding+comb:16 "
-                "--time 20");
-    app->callback([command, &context] { context.exit_code = run_converge(*command, context); });
+        .show_default();
+    app.option("--reference", command->options.reference,
+               "spectral EXR to compare with; default: one is rendered");
+    app.option("--spp-reference", command->options.reference_samples,
+               "samples a pixel of the reference that is rendered; default: as many as ten "
+               "times --time allow")
+        .in_range(1u, 1u << 30);
+    app.option("--time", command->options.time_seconds, "seconds of rendering, each method")
+        .positive()
+        .show_default();
+    app.option("--bands", command->bands, "film bands in nm, FROM:TO:STEP");
+    app.option("--memory-limit", command->options.render.memory_limit_bytes,
+               "refuse a render that would take more bytes (default: 80 % of the machine's)");
+    app.option("--checkpoint", command->options.render.checkpoint_seconds,
+               "keep the render in progress every so many seconds")
+        .positive()
+        .show_default();
+    app.flag("--resume", command->options.resume,
+             "refuse what was kept of another scene, build or device; without it such a render "
+             "begins anew");
+    app.footer("Example: reradiant converge scene.toml -o errors --methods adding,adding+comb:16 "
+               "--time 20");
+    app.callback([command, &context] { context.exit_code = run_converge(*command, context); });
 }
 
 } // namespace reradiant

@@ -187,72 +187,67 @@ int run_convert(const ConvertOptions& options, const CommonOptions& common) {
 }
 
 /// Adds the options that say how a plain table of numbers is to be read.
-void add_table_options(CLI::App& command, ConvertOptions& options) {
+void add_table_options(Command command, ConvertOptions& options) {
     const char* const group = "A table that does not say what its numbers are";
-    const auto choice = [](std::vector<std::string> words) {
-        return CLI::IsMember(std::move(words));
-    };
     command
-        .add_option("--rows", options.words.rows,
-                    "what a row of IN belongs to: emission (excitation goes across) or excitation")
-        ->check(choice({"emission", "excitation", "rows-emission", "rows-excitation"}))
-        ->group(group);
+        .option("--rows", options.words.rows,
+                "what a row of IN belongs to: emission (excitation goes across) or excitation")
+        .one_of({"emission", "excitation", "rows-emission", "rows-excitation"})
+        .group(group);
     command
-        .add_option("--quantity", options.words.quantity,
-                    "values of IN: per-band (their sum over the bands of excitation counts) or "
-                    "density (per nm of excitation)")
-        ->check(choice({"per-band", "density", "density-per-nm"}))
-        ->group(group);
+        .option("--quantity", options.words.quantity,
+                "values of IN: per-band (their sum over the bands of excitation counts) or "
+                "density (per nm of excitation)")
+        .one_of({"per-band", "density", "density-per-nm"})
+        .group(group);
     command
-        .add_option("--scale", options.words.scale,
-                    "percent, permille or the factor that makes a white reflect 1")
-        ->group(group);
+        .option("--scale", options.words.scale,
+                "percent, permille or the factor that makes a white reflect 1")
+        .group(group);
     command
-        .add_option("--decimal", options.words.decimal,
-                    "comma or point; told by itself where cells are parted by semicolons or tabs")
-        ->check(choice({"comma", "point"}))
-        ->group(group);
+        .option("--decimal", options.words.decimal,
+                "comma or point; told by itself where cells are parted by semicolons or tabs")
+        .one_of({"comma", "point"})
+        .group(group);
     command
-        .add_option("--kind", options.words.kind,
-                    "measured (holds noise, may have gaps) or model (the default)")
-        ->check(choice({"measured", "model"}))
-        ->group(group);
+        .option("--kind", options.words.kind,
+                "measured (holds noise, may have gaps) or model (the default)")
+        .one_of({"measured", "model"})
+        .group(group);
     command
-        .add_flag("--anti-stokes", options.words.anti_stokes,
-                  "emission below its excitation is real, not noise")
-        ->group(group);
+        .flag("--anti-stokes", options.words.anti_stokes,
+              "emission below its excitation is real, not noise")
+        .group(group);
     command
-        .add_option("--geometry", options.words.geometry,
-                    "illumination/viewing of the instrument, as in 45/0 (`fit --stack` needs it)")
-        ->group(group);
-    command.add_option("--out-rows", options.out_rows, "of a matrix written as CSV: emission")
-        ->check(choice({"emission", "excitation", "rows-emission", "rows-excitation"}));
-    command
-        .add_option("--out-quantity", options.out_quantity, "of a matrix written as CSV: per-band")
-        ->check(choice({"per-band", "density", "density-per-nm"}));
+        .option("--geometry", options.words.geometry,
+                "illumination/viewing of the instrument, as in 45/0 (`fit --stack` needs it)")
+        .group(group);
+    command.option("--out-rows", options.out_rows, "of a matrix written as CSV: emission")
+        .one_of({"emission", "excitation", "rows-emission", "rows-excitation"});
+    command.option("--out-quantity", options.out_quantity, "of a matrix written as CSV: per-band")
+        .one_of({"per-band", "density", "density-per-nm"});
 }
 
 } // namespace
 
-void add_convert_command(CLI::App& program, CommandContext& context) {
+void add_convert_command(Program& program, CommandContext& context) {
     const auto options = std::make_shared<ConvertOptions>();
-    CLI::App* const command =
-        program.add_subcommand("convert", "converts matrices (BFC, CSV, EXR), spectra (SPD, CSV, "
-                                          "JCAMP-DX, CGATS, SPDX) and scenes of Mitsuba 3");
+    Command command =
+        program.add_command("convert", "converts matrices (BFC, CSV, EXR), spectra (SPD, CSV, "
+                                       "JCAMP-DX, CGATS, SPDX) and scenes of Mitsuba 3");
     command
-        ->add_option("IN", options->in,
-                     "matrix (.bfc, .csv, .exr), spectrum (.spd, .csv, JCAMP-DX, CGATS, .spdx) or "
-                     "Mitsuba scene (.xml)")
-        ->required();
-    command->add_option("OUT", options->out, "file to write; its ending says the format")
-        ->required();
-    add_table_options(*command, *options);
-    command->footer("Examples:\n"
-                    "  reradiant convert paint.bfc paint.csv\n"
-                    "  reradiant convert export.csv paint.csv --rows emission --quantity per-band "
-                    "--scale percent --kind measured\n"
-                    "  reradiant convert scene.xml scene.toml");
-    command->callback(
+        .option("IN", options->in,
+                "matrix (.bfc, .csv, .exr), spectrum (.spd, .csv, JCAMP-DX, CGATS, .spdx) or "
+                "Mitsuba scene (.xml)")
+        .required();
+    command.option("OUT", options->out, "file to write; its ending says the format").required();
+    add_table_options(command, *options);
+    command.footer("Examples:\n"
+                   "  reradiant convert paint.bfc paint.csv\n"
+                   "  reradiant convert export.csv paint.csv --rows emission --quantity per-band "
+                   "--scale percent --kind measured\n"
+                   "  reradiant convert scene.xml scene.toml");
+    command.callback(
         [options, &context] { context.exit_code = run_convert(*options, context.common); });
 }
 

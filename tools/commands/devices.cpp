@@ -52,10 +52,10 @@ int run_devices(const CommonOptions& common) {
 
 } // namespace
 
-void add_devices_command(CLI::App& program, CommandContext& context) {
-    CLI::App* command = program.add_subcommand("devices", "lists the OpenCL devices");
-    command->footer("Example: reradiant devices --json devices.json");
-    command->callback([&context] { context.exit_code = run_devices(context.common); });
+void add_devices_command(Program& program, CommandContext& context) {
+    Command command = program.add_command("devices", "lists the OpenCL devices");
+    command.footer("Example: reradiant devices --json devices.json");
+    command.callback([&context] { context.exit_code = run_devices(context.common); });
 }
 
 } // namespace reradiant

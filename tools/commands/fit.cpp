@@ -14,7 +14,6 @@
 #include "tools/program/command.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/kept_work.h"
-#include "tools/program/number_options.h"
 #include "tools/program/outputs.h"
 
 #include <fmt/format.h>
@@ -214,75 +213,72 @@ int run_fit(const FitOptions& options, const CommonOptions& common) {
 
 } // namespace
 
-void add_fit_command(CLI::App& program, CommandContext& context) {
+void add_fit_command(Program& program, CommandContext& context) {
     auto options = std::make_shared<FitOptions>();
-    CLI::App* const command = program.add_subcommand(
+    Command command = program.add_command(
         "fit", "Fits a re-radiation matrix to bispectral data, bare or through a layer");
-    command->add_option("DATA", options->data, "re-radiation CSV, CSV of `measure`, .BFC or .exr")
-        ->required();
-    command->add_option("-o,--output", options->output, "re-radiation matrix to write")->required();
-    command->add_option("--model", options->model, "factors, gaussians or matrix")
-        ->capture_default_str();
-    command->add_option(
+    command.option("DATA", options->data, "re-radiation CSV, CSV of `measure`, .BFC or .exr")
+        .required();
+    command.option("-o,--output", options->output, "re-radiation matrix to write").required();
+    command.option("--model", options->model, "factors, gaussians or matrix").show_default();
+    command.option(
         "--rank", options->rank,
         "terms (dyes, roughly): 1 to 4 factors or 1 to 24 gaussians; default: as many as "
         "the data show");
-    CLI::Option* const smooth =
-        command->add_option("--smooth-nm", options->smooth_nm,
-                            "spacing of the spline functions of factors, 0: one number a band");
+    const CommandOption smooth =
+        command.option("--smooth-nm", options->smooth_nm,
+                       "spacing of the spline functions of factors, 0: one number a band");
     command
-        ->add_option("--bytes", options->bytes,
-                     "most bytes that the fitted factors may take: values at the bands that matter "
-                     "most, straight lines between")
-        ->excludes(smooth);
+        .option("--bytes", options->bytes,
+                "most bytes that the fitted factors may take: values at the bands that matter "
+                "most, straight lines between")
+        .excludes(smooth);
     command
-        ->add_option("--spill-nm", options->spill_nm,
-                     "entries this near to the diagonal are not fitted; default: one band")
-        ->check(non_negative_number());
+        .option("--spill-nm", options->spill_nm,
+                "entries this near to the diagonal are not fitted; default: one band")
+        .non_negative();
     command
-        ->add_option("--mask", options->mask,
-                     "entries that count as not measured: auto (scatter of the monochromators that "
-                     "stands out), none, or a list such as first:20,second:15,third:10,half:10 "
-                     "(+- nm about emission = 1, 2, 3, 1/2 x excitation; never the diagonal) and "
-                     "box:300-350x500-560 (excitation x emission)")
-        ->capture_default_str();
-    command->add_option("--memory-limit", options->memory_limit_bytes,
-                        "refuse a fit that would take more bytes (default: 80 % of the machine's)");
+        .option("--mask", options->mask,
+                "entries that count as not measured: auto (scatter of the monochromators that "
+                "stands out), none, or a list such as first:20,second:15,third:10,half:10 "
+                "(+- nm about emission = 1, 2, 3, 1/2 x excitation; never the diagonal) and "
+                "box:300-350x500-560 (excitation x emission)")
+        .show_default();
+    command.option("--memory-limit", options->memory_limit_bytes,
+                   "refuse a fit that would take more bytes (default: 80 % of the machine's)");
     command
-        ->add_option("--loss", options->loss,
-                     "how outliers count: none (as all others), huber or cauchy (less)")
-        ->capture_default_str();
-    command->add_option("--stack", options->stack,
-                        "MATERIAL.toml whose layers lay above the sample");
+        .option("--loss", options->loss,
+                "how outliers count: none (as all others), huber or cauchy (less)")
+        .show_default();
+    command.option("--stack", options->stack, "MATERIAL.toml whose layers lay above the sample");
     command
-        ->add_option("--unknown", options->unknown,
-                     "numbers of the stack that are fitted, too: thickness,absorption,ior")
-        ->delimiter(',');
-    command->add_flag("--anti-stokes", options->anti_stokes,
-                      "emission below the excitation is possible");
-    command->add_option("--report", options->report, "HTML report to write");
-    command->add_option("--model-file", options->model_file,
-                        "compact model as TOML, usable as RERADIATION");
-    command->add_option("--most-seconds", options->seconds, "time limit of one minimisation")
-        ->check(positive_number())
-        ->capture_default_str();
+        .option("--unknown", options->unknown,
+                "numbers of the stack that are fitted, too: thickness,absorption,ior")
+        .delimiter(',');
+    command.flag("--anti-stokes", options->anti_stokes,
+                 "emission below the excitation is possible");
+    command.option("--report", options->report, "HTML report to write");
+    command.option("--model-file", options->model_file,
+                   "compact model as TOML, usable as RERADIATION");
+    command.option("--most-seconds", options->seconds, "time limit of one minimisation")
+        .positive()
+        .show_default();
     command
-        ->add_option("--most-iterations", options->iterations,
-                     "limit of Ceres' steps in one minimisation")
-        ->check(positive_number())
-        ->capture_default_str();
+        .option("--most-iterations", options->iterations,
+                "limit of Ceres' steps in one minimisation")
+        .positive()
+        .show_default();
     command
-        ->add_option("--checkpoint", options->checkpoint_seconds,
-                     "write MATRIX.csv.checkpoint every so many seconds")
-        ->check(positive_number())
-        ->capture_default_str();
-    command->add_flag("--resume", options->resume,
-                      "go on from MATRIX.csv.checkpoint where it exists");
-    command->footer(
+        .option("--checkpoint", options->checkpoint_seconds,
+                "write MATRIX.csv.checkpoint every so many seconds")
+        .positive()
+        .show_default();
+    command.flag("--resume", options->resume, "go on from MATRIX.csv.checkpoint where it exists");
+    command.footer(
         "Exits with 3, everything written, when the data hold more than the model found "
         "in them. A fit that fails (exit code 1) writes --json alone: its `failure` and how far "
         "it got.\nExample: reradiant fit orange.BFC -o orange.csv --report orange.html");
-    command->callback(
+    command.callback(
         [options, &context] { context.exit_code = run_fit(*options, context.common); });
 }
 

@@ -168,19 +168,18 @@ Json describe(const fs::path& file) {
 
 } // namespace
 
-void add_info_command(CLI::App& program, CommandContext& context) {
+void add_info_command(Program& program, CommandContext& context) {
     auto file = std::make_shared<fs::path>();
-    CLI::App* const command = program.add_subcommand(
+    Command command = program.add_command(
         "info", "Says what a file holds: image, re-radiation matrix, spectrum, scene, material");
     command
-        ->add_option(
-            "FILE", *file,
-            "scene (TOML, or XML of Mitsuba 3), material (TOML), spectral image (EXR), "
-            "re-radiation matrix (CSV, BFC or EXR), spectrum (CSV, SPD, JCAMP-DX, CGATS or IES "
-            "TM-27), or index of refraction of a metal (CSV of nm,n,k)")
-        ->required();
-    command->footer("Example: reradiant info out.exr");
-    command->callback([file, &context] {
+        .option("FILE", *file,
+                "scene (TOML, or XML of Mitsuba 3), material (TOML), spectral image (EXR), "
+                "re-radiation matrix (CSV, BFC or EXR), spectrum (CSV, SPD, JCAMP-DX, CGATS or IES "
+                "TM-27), or index of refraction of a metal (CSV of nm,n,k)")
+        .required();
+    command.footer("Example: reradiant info out.exr");
+    command.callback([file, &context] {
         check_outputs(context.common, {}, {*file});
         const Json description = describe(*file);
         write_json(context.common.json, description);

@@ -12,7 +12,6 @@
 #include "tools/program/command.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/kept_work.h"
-#include "tools/program/number_options.h"
 #include "tools/program/outputs.h"
 #include "tools/program/parse_options.h"
 
@@ -196,49 +195,47 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
 
 } // namespace
 
-void add_measure_command(CLI::App& program, CommandContext& context) {
+void add_measure_command(Program& program, CommandContext& context) {
     auto options = std::make_shared<MeasureOptions>();
-    CLI::App* const command = program.add_subcommand(
+    Command command = program.add_command(
         "measure", "Measures a material with a virtual bispectral goniophotometer");
-    CLI::Option_group* const source = command->add_option_group("material");
-    source->require_option(1);
-    source->add_option("MATERIAL", options->material, "TOML file with one [material]");
-    source->add_option("--preset", options->preset, "a material of spectra/materials by name");
-    command->add_option("-o,--output", options->output, "CSV file to write")->required();
+    Command source = command.one_of_group("material");
+    source.option("MATERIAL", options->material, "TOML file with one [material]");
+    source.option("--preset", options->preset, "a material of spectra/materials by name");
+    command.option("-o,--output", options->output, "CSV file to write").required();
     command
-        ->add_option("--theta-i", options->theta_i,
-                     "incident angles, degrees, as in 0,45; default: 0")
-        ->delimiter(',');
+        .option("--theta-i", options->theta_i, "incident angles, degrees, as in 0,45; default: 0")
+        .delimiter(',');
     command
-        ->add_option("--theta-o", options->theta_o,
-                     "outgoing angles, degrees, as in 5,20,60; default: 0")
-        ->delimiter(',');
+        .option("--theta-o", options->theta_o,
+                "outgoing angles, degrees, as in 5,20,60; default: 0")
+        .delimiter(',');
     command
-        ->add_option("--phi", options->phi,
-                     "azimuths of the outgoing from the incident direction, degrees; 180 is the "
-                     "mirror side; default: 0")
-        ->delimiter(',');
-    command->add_flag("--hemispherical", options->hemispherical,
-                      "directional-hemispherical matrix instead of the BRDF");
-    command->add_option("--model", options->model, "auto, adding, weidlich-wilkie or walk");
-    command->add_option("--bands", options->bands,
-                        "FROM:TO:STEP of band centres in nm; default: the matrix's own grid");
+        .option("--phi", options->phi,
+                "azimuths of the outgoing from the incident direction, degrees; 180 is the "
+                "mirror side; default: 0")
+        .delimiter(',');
+    command.flag("--hemispherical", options->hemispherical,
+                 "directional-hemispherical matrix instead of the BRDF");
+    command.option("--model", options->model, "auto, adding, weidlich-wilkie or walk");
+    command.option("--bands", options->bands,
+                   "FROM:TO:STEP of band centres in nm; default: the matrix's own grid");
     command
-        ->add_option("--samples", options->samples,
-                     "paths per theta-i (model walk only; default 65536), in blocks of 256")
-        ->check(non_negative_number());
+        .option("--samples", options->samples,
+                "paths per theta-i (model walk only; default 65536), in blocks of 256")
+        .non_negative();
     command
-        ->add_option("--checkpoint", options->checkpoint_seconds,
-                     "write OUT.csv.checkpoint every so many seconds of walks")
-        ->check(positive_number())
-        ->capture_default_str();
-    command->add_flag("--resume", options->resume, "go on from OUT.csv.checkpoint where it exists");
-    command->add_option("--memory-limit", options->memory_limit_bytes,
-                        "refuse a measurement that would take more bytes (default: 80 % of the "
-                        "machine's)");
-    command->footer("Example: reradiant measure lacquer.toml -o lacquer.csv --theta-i 45 "
-                    "--theta-o 0,20,60 --phi 180");
-    command->callback(
+        .option("--checkpoint", options->checkpoint_seconds,
+                "write OUT.csv.checkpoint every so many seconds of walks")
+        .positive()
+        .show_default();
+    command.flag("--resume", options->resume, "go on from OUT.csv.checkpoint where it exists");
+    command.option("--memory-limit", options->memory_limit_bytes,
+                   "refuse a measurement that would take more bytes (default: 80 % of the "
+                   "machine's)");
+    command.footer("Example: reradiant measure lacquer.toml -o lacquer.csv --theta-i 45 "
+                   "--theta-o 0,20,60 --phi 180");
+    command.callback(
         [options, &context] { context.exit_code = run_measure(*options, context.common); });
 }
 

@@ -51,20 +51,20 @@ int run_merge(const MergeCommand& command, const CommandContext& context) {
 
 } // namespace
 
-void add_merge_command(CLI::App& program, CommandContext& context) {
+void add_merge_command(Program& program, CommandContext& context) {
     auto command = std::make_shared<MergeCommand>();
-    CLI::App* const app = program.add_subcommand(
+    Command app = program.add_command(
         "merge", "Adds partial renders of disjoint sample ranges, whatever their order");
-    app->add_option("PART", command->parts, "spectral EXR of `render --sample-range`")->required();
-    app->add_option("-o,--output", command->output, "spectral EXR to write")->required();
-    app->add_option("--png", command->png, "write the display image too");
-    app->add_option("--exposure", command->display.exposure_ev, "exposure of the images, EV");
-    app->add_option("--memory-limit", command->memory_limit_bytes,
-                    "refuse parts that would take more bytes (default: 80 % of the machine's)");
-    app->footer("Example: reradiant render s.toml -o a.exr --sample-range 0:64\n"
-                "         reradiant render s.toml -o b.exr --sample-range 64:128\n"
-                "         reradiant merge a.exr b.exr -o all.exr");
-    app->callback([command, &context] { context.exit_code = run_merge(*command, context); });
+    app.option("PART", command->parts, "spectral EXR of `render --sample-range`").required();
+    app.option("-o,--output", command->output, "spectral EXR to write").required();
+    app.option("--png", command->png, "write the display image too");
+    app.option("--exposure", command->display.exposure_ev, "exposure of the images, EV");
+    app.option("--memory-limit", command->memory_limit_bytes,
+               "refuse parts that would take more bytes (default: 80 % of the machine's)");
+    app.footer("Example: reradiant render s.toml -o a.exr --sample-range 0:64\n"
+               "         reradiant render s.toml -o b.exr --sample-range 64:128\n"
+               "         reradiant merge a.exr b.exr -o all.exr");
+    app.callback([command, &context] { context.exit_code = run_merge(*command, context); });
 }
 
 } // namespace reradiant

@@ -16,7 +16,6 @@
 #include "tools/program/command.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/join_team.h"
-#include "tools/program/number_options.h"
 #include "tools/program/outputs.h"
 #include "tools/program/parse_options.h"
 #include "tools/program/tev_preview.h"
@@ -209,74 +208,71 @@ int run_render(RenderCommand command, const CommandContext& context) {
     return 0;
 }
 
-void add_stopping_options(CLI::App& app, RenderCommand& command) {
-    app.add_option("--spp", command.render.samples, "samples a pixel (64 unless --time or --error)")
-        ->check(CLI::Range(1u, 1u << 30))
-        ->each([&command](const std::string&) { command.samples_given = true; });
-    app.add_option("--time", command.render.time_seconds, "stop after so many seconds")
-        ->check(positive_number());
-    app.add_option("--error", command.render.relmse,
-                   "stop at this estimated relMSE: mean of (error / value)^2 over pixels and bands")
-        ->check(positive_number());
-    app.add_option("--sample-range", command.sample_range,
-                   "only samples A to B - 1 of every pixel, as A:B");
-    app.add_option("--checkpoint", command.render.checkpoint_seconds,
-                   "write OUT.exr.checkpoint every so many seconds")
-        ->check(positive_number())
-        ->capture_default_str();
-    app.add_flag("--resume", command.render.resume,
-                 "go on from OUT.exr.checkpoint where it exists");
-    app.add_option("--memory-limit", command.render.memory_limit_bytes,
-                   "refuse a render that would take more bytes (default: 80 % of the machine's)");
+void add_stopping_options(Command app, RenderCommand& command) {
+    app.option("--spp", command.render.samples, "samples a pixel (64 unless --time or --error)")
+        .in_range(1u, 1u << 30)
+        .when_given([&command] { command.samples_given = true; });
+    app.option("--time", command.render.time_seconds, "stop after so many seconds").positive();
+    app.option("--error", command.render.relmse,
+               "stop at this estimated relMSE: mean of (error / value)^2 over pixels and bands")
+        .positive();
+    app.option("--sample-range", command.sample_range,
+               "only samples A to B - 1 of every pixel, as A:B");
+    app.option("--checkpoint", command.render.checkpoint_seconds,
+               "write OUT.exr.checkpoint every so many seconds")
+        .positive()
+        .show_default();
+    app.flag("--resume", command.render.resume, "go on from OUT.exr.checkpoint where it exists");
+    app.option("--memory-limit", command.render.memory_limit_bytes,
+               "refuse a render that would take more bytes (default: 80 % of the machine's)");
 }
 
-void add_sampling_options(CLI::App& app, RenderCommand& command) {
-    app.add_option("--model", command.model,
-                   "auto, adding, weidlich-wilkie or walk for every material");
-    app.add_option("--wavelengths", command.wavelengths,
-                   "comb or comb:N: every path carries N wavelengths, spread over the film's bands "
-                   "(default: one a band); hero or hero:N: N of these (default 4), drawn at "
-                   "random, which is noisier");
-    app.add_option("--comb-phase", command.phase,
-                   "where in its band a wavelength of the comb lies. random: anywhere; centre: at "
-                   "its centre")
-        ->check(CLI::IsMember({"random", "centre"}));
-    app.add_option("--bands", command.bands, "film bands in nm, FROM:TO:STEP");
-    app.add_option("--variance", command.variance, "bands: variance per band, too")
-        ->check(CLI::IsMember({"bands"}));
-    app.add_flag("--adaptive", command.render.adaptive,
-                 "more samples where the error is; --spp is then the mean over pixels");
-    app.add_flag("--all-features", command.render.all_features,
-                 "compile everything, also what the scene does not need");
-    app.add_flag("--double", command.render.in_double,
-                 "kernels in double precision, to see what single costs (sums over wavelengths and "
-                 "what is stored stay single)");
-    app.add_option("--batch", command.render.batch_paths,
-                   "paths in flight; the image does not depend on it")
-        ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24));
+void add_sampling_options(Command app, RenderCommand& command) {
+    app.option("--model", command.model,
+               "auto, adding, weidlich-wilkie or walk for every material");
+    app.option("--wavelengths", command.wavelengths,
+               "comb or comb:N: every path carries N wavelengths, spread over the film's bands "
+               "(default: one a band); hero or hero:N: N of these (default 4), drawn at "
+               "random, which is noisier");
+    app.option("--comb-phase", command.phase,
+               "where in its band a wavelength of the comb lies. random: anywhere; centre: at "
+               "its centre")
+        .one_of({"random", "centre"});
+    app.option("--bands", command.bands, "film bands in nm, FROM:TO:STEP");
+    app.option("--variance", command.variance, "bands: variance per band, too").one_of({"bands"});
+    app.flag("--adaptive", command.render.adaptive,
+             "more samples where the error is; --spp is then the mean over pixels");
+    app.flag("--all-features", command.render.all_features,
+             "compile everything, also what the scene does not need");
+    app.flag("--double", command.render.in_double,
+             "kernels in double precision, to see what single costs (sums over wavelengths and "
+             "what is stored stay single)");
+    app.option("--batch", command.render.batch_paths,
+               "paths in flight; the image does not depend on it")
+        .in_range(std::size_t{1}, std::size_t{1} << 24);
 }
 
-void add_display_options(CLI::App& app, RenderCommand& command) {
-    app.add_option("--png", command.png, "write the display image too");
-    app.add_option("--tev", command.tev, "HOST:PORT of the viewer tev: shows every pass there");
-    app.add_option("--ocio", command.display.ocio_config, "OpenColorIO config");
-    app.add_option("--display", command.display.display, "display of the config");
-    app.add_option("--view", command.display.view, "view of the display");
-    app.add_option("--exposure", command.display.exposure_ev, "exposure of the display image, EV");
+void add_display_options(Command app, RenderCommand& command) {
+    app.option("--png", command.png, "write the display image too");
+    app.option("--tev", command.tev, "HOST:PORT of the viewer tev: shows every pass there");
+    app.option("--ocio", command.display.ocio_config, "OpenColorIO config");
+    app.option("--display", command.display.display, "display of the config");
+    app.option("--view", command.display.view, "view of the display");
+    app.option("--exposure", command.display.exposure_ev, "exposure of the display image, EV");
 }
 
 } // namespace
 
-void add_render_command(CLI::App& program, CommandContext& context) {
+void add_render_command(Program& program, CommandContext& context) {
     auto command = std::make_shared<RenderCommand>();
-    CLI::App* app = program.add_subcommand("render", "path traces a scene to a spectral EXR");
-    app->add_option("SCENE", command->scene, "scene file (TOML, or XML of Mitsuba 3)")->required();
-    app->add_option("-o,--output", command->output, "spectral EXR to write")->required();
-    add_stopping_options(*app, *command);
-    add_sampling_options(*app, *command);
-    add_display_options(*app, *command);
-    app->footer("Example: reradiant render scene.toml -o out.exr --png out.png --spp 256");
-    app->callback([command, &context] { context.exit_code = run_render(*command, context); });
+    Command app = program.add_command("render", "path traces a scene to a spectral EXR");
+    app.option("SCENE", command->scene, "scene file (TOML, or XML of Mitsuba 3)").required();
+    app.option("-o,--output", command->output, "spectral EXR to write").required();
+    add_stopping_options(app, *command);
+    add_sampling_options(app, *command);
+    add_display_options(app, *command);
+    app.footer("Example: reradiant render scene.toml -o out.exr --png out.png --spp 256");
+    app.callback([command, &context] { context.exit_code = run_render(*command, context); });
 }
 
 } // namespace reradiant

@@ -10,7 +10,6 @@
 #include "tools/program/command.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/join_team.h"
-#include "tools/program/number_options.h"
 #include "tools/program/outputs.h"
 
 #include <fmt/core.h>
@@ -110,25 +109,25 @@ int run(StudyCommand command, const CommandContext& context) {
 
 } // namespace
 
-void add_study_command(CLI::App& program, CommandContext& context) {
+void add_study_command(Program& program, CommandContext& context) {
     auto command = std::make_shared<StudyCommand>();
-    CLI::App* const app = program.add_subcommand(
+    Command app = program.add_command(
         "study", "Sweeps parameters of a scene or material: renders, measurements and a page");
-    app->add_option("STUDY", command->study, "study file (TOML)")->required();
-    app->add_option("-o,--output", command->options.folder, "folder to write to")->required();
-    app->add_option("--memory-limit", command->options.render.memory_limit_bytes,
-                    "refuse a render that would take more bytes (default: 80 % of the machine's)");
-    app->add_option("--checkpoint", command->options.render.checkpoint_seconds,
-                    "keep a cell's render every so many seconds")
-        ->check(positive_number())
-        ->capture_default_str();
-    app->add_flag("--resume", command->options.resume,
-                  "refuse what was kept of another scene, build or device; without it such a cell "
-                  "begins anew");
-    app->footer("All pictures have one exposure, chosen by what they show; exposure_ev in the "
-                "study's [render] sets it.\n"
-                "Example: reradiant study study.toml -o results");
-    app->callback([command, &context] { context.exit_code = run(*command, context); });
+    app.option("STUDY", command->study, "study file (TOML)").required();
+    app.option("-o,--output", command->options.folder, "folder to write to").required();
+    app.option("--memory-limit", command->options.render.memory_limit_bytes,
+               "refuse a render that would take more bytes (default: 80 % of the machine's)");
+    app.option("--checkpoint", command->options.render.checkpoint_seconds,
+               "keep a cell's render every so many seconds")
+        .positive()
+        .show_default();
+    app.flag("--resume", command->options.resume,
+             "refuse what was kept of another scene, build or device; without it such a cell "
+             "begins anew");
+    app.footer("All pictures have one exposure, chosen by what they show; exposure_ev in the "
+               "study's [render] sets it.\n"
+               "Example: reradiant study study.toml -o results");
+    app.callback([command, &context] { context.exit_code = run(*command, context); });
 }
 
 } // namespace reradiant

@@ -86,24 +86,24 @@ int run_synth(const SynthOptions& options, const CommonOptions& common) {
 
 } // namespace
 
-void add_synth_command(CLI::App& program, CommandContext& context) {
+void add_synth_command(Program& program, CommandContext& context) {
     auto options = std::make_shared<SynthOptions>();
-    CLI::App* const command = program.add_subcommand(
+    Command command = program.add_command(
         "synth", "Synthetic bispectral data of known fluorophores, with an instrument's noise");
-    command->add_option("RECIPE", options->recipe, "TOML file, see tools/examples/synth-*.toml")
-        ->required();
+    command.option("RECIPE", options->recipe, "TOML file, see tools/examples/synth-*.toml")
+        .required();
     command
-        ->add_option("-o,--output", options->output,
-                     "CSV to write: a measured re-radiation matrix, or with [geometry] what "
-                     "`measure` writes, with standard errors")
-        ->required();
-    command->add_option("--truth", options->truth,
-                        "write the substrate's matrix without noise (.csv, .exr, .bfc)");
-    command->footer("Examples:\n"
-                    "  reradiant synth tools/examples/synth-orange.toml -o ~/orange.csv --seed 7\n"
-                    "  reradiant synth tools/examples/synth-varnished.toml -o ~/data.csv "
-                    "--truth ~/truth.csv");
-    command->callback(
+        .option("-o,--output", options->output,
+                "CSV to write: a measured re-radiation matrix, or with [geometry] what "
+                "`measure` writes, with standard errors")
+        .required();
+    command.option("--truth", options->truth,
+                   "write the substrate's matrix without noise (.csv, .exr, .bfc)");
+    command.footer("Examples:\n"
+                   "  reradiant synth tools/examples/synth-orange.toml -o ~/orange.csv --seed 7\n"
+                   "  reradiant synth tools/examples/synth-varnished.toml -o ~/data.csv "
+                   "--truth ~/truth.csv");
+    command.callback(
         [options, &context] { context.exit_code = run_synth(*options, context.common); });
 }
 

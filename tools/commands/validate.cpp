@@ -219,27 +219,25 @@ Json validate(const fs::path& file) {
 
 } // namespace
 
-void add_validate_command(CLI::App& program, CommandContext& context) {
+void add_validate_command(Program& program, CommandContext& context) {
     struct Options {
         fs::path file;
         bool reference = false;
     };
     auto options = std::make_shared<Options>();
-    CLI::App* const command = program.add_subcommand(
+    Command command = program.add_command(
         "validate", "Checks any file that another command takes, and says what it holds");
-    CLI::Option_group* const what = command->add_option_group("what");
-    what->require_option(1);
-    what->add_option(
-        "FILE", options->file,
-        "scene, material, layers, recipe or study (TOML, XML), matrix (CSV, BFC, EXR), "
-        "measurement, spectrum (also JCAMP-DX, CGATS, IES TM-27), polygons, mesh (PLY, "
-        "OBJ), image (EXR, PNG) or OpenColorIO config (.ocio)");
-    what->add_flag("--reference", options->reference,
-                   "print every key of scene and material files, as Markdown");
-    command->footer("Examples:\n"
-                    "  reradiant validate scene.toml\n"
-                    "  reradiant validate --reference > reference.md");
-    command->callback([options, &context] {
+    Command what = command.one_of_group("what");
+    what.option("FILE", options->file,
+                "scene, material, layers, recipe or study (TOML, XML), matrix (CSV, BFC, EXR), "
+                "measurement, spectrum (also JCAMP-DX, CGATS, IES TM-27), polygons, mesh (PLY, "
+                "OBJ), image (EXR, PNG) or OpenColorIO config (.ocio)");
+    what.flag("--reference", options->reference,
+              "print every key of scene and material files, as Markdown");
+    command.footer("Examples:\n"
+                   "  reradiant validate scene.toml\n"
+                   "  reradiant validate --reference > reference.md");
+    command.callback([options, &context] {
         if (options->reference) {
             fmt::print("{}", format_reference());
             return;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/program/command_line.h"
 
 #include <filesystem>
 #include <functional>
@@ -21,11 +21,11 @@ struct CommonOptions {
 /// The state that every sub-command shares. A command's function adds itself to the program and
 /// leaves its result in `exit_code`; failures leave as Error and become exit codes in main.cpp:
 ///
-///     void add_info_command(CLI::App& program, CommandContext& context) {
-///         CLI::App* command = program.add_subcommand("info", "says what a file holds");
-///         command->add_option("FILE", ...)->required();
-///         command->footer("Example: reradiant info out.exr");
-///         command->callback([...] { context.exit_code = run_info(...); });
+///     void add_info_command(Program& program, CommandContext& context) {
+///         Command command = program.add_command("info", "says what a file holds");
+///         command.option("FILE", ...).required();
+///         command.footer("Example: reradiant info out.exr");
+///         command.callback([...] { context.exit_code = run_info(...); });
 ///     }
 ///
 /// The common options are added to every sub-command by main.cpp, after that.
@@ -36,20 +36,20 @@ struct CommandContext {
 };
 
 /// One function a sub-command, one file each: tools/commands/render.cpp and so on.
-void add_render_command(CLI::App& program, CommandContext& context);
-void add_measure_command(CLI::App& program, CommandContext& context);
-void add_validate_command(CLI::App& program, CommandContext& context);
-void add_info_command(CLI::App& program, CommandContext& context);
-void add_devices_command(CLI::App& program, CommandContext& context);
-void add_convert_command(CLI::App& program, CommandContext& context);
-void add_compare_command(CLI::App& program, CommandContext& context);
-void add_converge_command(CLI::App& program, CommandContext& context);
-void add_study_command(CLI::App& program, CommandContext& context);
-void add_merge_command(CLI::App& program, CommandContext& context);
-void add_synth_command(CLI::App& program, CommandContext& context);
-void add_colour_command(CLI::App& program, CommandContext& context);
-void add_fit_command(CLI::App& program, CommandContext& context);
-void add_classify_command(CLI::App& program, CommandContext& context);
-void add_check_command(CLI::App& program, CommandContext& context);
+void add_render_command(Program& program, CommandContext& context);
+void add_measure_command(Program& program, CommandContext& context);
+void add_validate_command(Program& program, CommandContext& context);
+void add_info_command(Program& program, CommandContext& context);
+void add_devices_command(Program& program, CommandContext& context);
+void add_convert_command(Program& program, CommandContext& context);
+void add_compare_command(Program& program, CommandContext& context);
+void add_converge_command(Program& program, CommandContext& context);
+void add_study_command(Program& program, CommandContext& context);
+void add_merge_command(Program& program, CommandContext& context);
+void add_synth_command(Program& program, CommandContext& context);
+void add_colour_command(Program& program, CommandContext& context);
+void add_fit_command(Program& program, CommandContext& context);
+void add_classify_command(Program& program, CommandContext& context);
+void add_check_command(Program& program, CommandContext& context);
 
 } // namespace reradiant

@@ -20,7 +20,7 @@ namespace {
 constexpr int exit_failure = 1;
 constexpr int exit_bad_input = 2;
 
-void add_commands(CLI::App& program, CommandContext& context) {
+void add_commands(Program& program, CommandContext& context) {
     add_render_command(program, context);
     add_measure_command(program, context);
     add_synth_command(program, context);
@@ -38,38 +38,30 @@ void add_commands(CLI::App& program, CommandContext& context) {
     add_devices_command(program, context);
 }
 
-void add_common_options(CLI::App& command, CommonOptions& common) {
+void add_common_options(Command command, CommonOptions& common) {
     command
-        .add_option("--device", common.device,
-                    "OpenCL device by (part of its) name or index, see `devices`")
-        ->envname("RERADIANT_DEVICE");
-    command.add_option("--seed", common.seed, "seed of the random numbers")->capture_default_str();
-    command.add_option("--threads", common.threads, "threads of the host, 0: all")
-        ->check(CLI::Range(0, 65536))
-        ->capture_default_str();
-    command.add_option("--json", common.json, "write a machine-readable result to this file");
-    CLI::Option* const quiet = command.add_flag("--quiet", common.quiet,
-                                                "no warnings, no progress, no word of what was "
-                                                "written; results (of colour, info, check, ...) "
-                                                "are printed all the same");
-    command
-        .add_flag("--verbose", common.verbose, "say more: each material's model, what was left out")
-        ->excludes(quiet);
-    command.set_version_flag("--version", version_text());
+        .option("--device", common.device,
+                "OpenCL device by (part of its) name or index, see `devices`")
+        .environment("RERADIANT_DEVICE");
+    command.option("--seed", common.seed, "seed of the random numbers").show_default();
+    command.option("--threads", common.threads, "threads of the host, 0: all")
+        .in_range(0, 65536)
+        .show_default();
+    command.option("--json", common.json, "write a machine-readable result to this file");
+    const CommandOption quiet = command.flag("--quiet", common.quiet,
+                                             "no warnings, no progress, no word of what was "
+                                             "written; results (of colour, info, check, ...) "
+                                             "are printed all the same");
+    command.flag("--verbose", common.verbose, "say more: each material's model, what was left out")
+        .excludes(quiet);
+    command.version(version_text());
     // Before the command's own callback runs, so that its messages obey.
-    command.parse_complete_callback([&common] {
+    command.before_callback([&common] {
         if (common.quiet)
             spdlog::set_level(spdlog::level::err);
         else if (common.verbose)
             spdlog::set_level(spdlog::level::debug);
     });
-}
-
-std::vector<std::string> command_names(const CLI::App& program) {
-    std::vector<std::string> names;
-    for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))
-        names.push_back(command->get_name());
-    return names;
 }
 
 /// The command line as one would type it again in a POSIX shell.
@@ -99,8 +91,8 @@ int fail(int code, const std::string& message) {
     return code;
 }
 
-int parse_and_run(CLI::App& program, CommandContext& context, int argc, char** argv) {
-    const std::vector<std::string> names = command_names(program);
+int parse_and_run(Program& program, CommandContext& context, int argc, char** argv) {
+    const std::vector<std::string> names = program.command_names();
     const std::string list = fmt::format("{}", fmt::join(names, ", "));
     if (argc < 2)
         return fail(exit_bad_input,
@@ -110,10 +102,8 @@ int parse_and_run(CLI::App& program, CommandContext& context, int argc, char** a
         return fail(exit_bad_input,
                     fmt::format("reradiant: unknown command '{}'; take one of: {}", first, list));
     try {
-        program.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0)
-            return program.exit(error); // --help and --version
+        program.parse_and_run(argc, argv);
+    } catch (const CommandLineError& error) {
         return fail(exit_bad_input,
                     fmt::format("reradiant: {}; see `reradiant {}--help`", error.what(),
                                 first.starts_with("-") ? "" : first + " "));
@@ -128,13 +118,12 @@ int run(int argc, char** argv) {
 
     CommandContext context;
     context.command_line = quoted_command_line(argc, argv);
-    CLI::App program("Renders and measures fluorescent layered materials.", "reradiant");
-    program.set_version_flag("--version", version_text());
-    program.require_subcommand(1);
+    Program program("Renders and measures fluorescent layered materials.", "reradiant",
+                    version_text());
     program.footer("`reradiant COMMAND --help` says more about a command.");
     add_commands(program, context);
-    for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))
-        add_common_options(*command, context.common);
+    for (const Command& command : program.commands())
+        add_common_options(command, context.common);
     return parse_and_run(program, context, argc, argv);
 }
 

@@ -1,8 +1,7 @@
 #include "host/fit/factors/factor_start.h"
 
 #include "host/fit/models/run_in_parallel.h"
-
-#include <Eigen/SVD>
+#include "host/spectral/matrix/singular_values.h"
 
 #include <algorithm>
 #include <numeric>
@@ -23,14 +22,14 @@ constexpr int random_guesses = 12;
 /// Non-negative double SVD: of each singular pair the sign that carries more energy. Entries that
 /// are not used count as zero; the descent that follows forgets them.
 FactorCurves singular_start(const Matrix& value, int rank) {
-    const Eigen::BDCSVD<Matrix> svd(value, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const ThinSvd svd = thin_svd(value);
     FactorCurves start{Matrix::Zero(value.rows(), rank), Matrix::Zero(value.cols(), rank)};
-    for (int k = 0; k < rank && k < svd.singularValues().size(); ++k) {
-        const Vector u = svd.matrixU().col(k), v = svd.matrixV().col(k);
+    for (int k = 0; k < rank && k < svd.s.size(); ++k) {
+        const Vector u = svd.u.col(k), v = svd.v.col(k);
         const Vector up = u.cwiseMax(0.0), vp = v.cwiseMax(0.0);
         const Vector um = (-u).cwiseMax(0.0), vm = (-v).cwiseMax(0.0);
         const bool plus = up.norm() * vp.norm() >= um.norm() * vm.norm();
-        const double scale = std::sqrt(svd.singularValues()(k));
+        const double scale = std::sqrt(svd.s(k));
         start.emission.col(k) = scale * (plus ? up : um);
         start.excitation.col(k) = scale * (plus ? vp : vm);
     }

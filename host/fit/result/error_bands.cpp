@@ -1,9 +1,9 @@
 #include "host/fit/result/error_bands.h"
 
 #include "host/fit/solver/robust_loss.h"
+#include "host/spectral/matrix/singular_values.h"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <ceres/loss_function.h>
 
 #include <algorithm>
@@ -156,7 +156,7 @@ public:
         Covariance result;
         result.free = static_cast<int>(data_.free.size());
         if (result.free > 0)
-            result.rank = determined_count(Eigen::BDCSVD<Matrix>(data_.triangle).singularValues());
+            result.rank = determined_count(singular_values(data_.triangle));
         result.root = root(variance);
         return result;
     }
@@ -212,11 +212,11 @@ Covariance covariance_of(const Matrix& jacobian, const std::vector<bool>& held, 
     result.root = Matrix::Zero(jacobian.cols(), 0);
     if (count == 0 || jacobian.rows() == 0)
         return result;
-    const Eigen::BDCSVD<Matrix> svd(columns.triangle, Eigen::ComputeThinV);
-    const Vector& values = svd.singularValues();
+    const ThinSvd svd = thin_svd(columns.triangle);
+    const Vector& values = svd.s;
     result.rank = determined_count(values);
     result.root = columns.all_rows(
-        columns.lengths.cwiseInverse().asDiagonal() * svd.matrixV().leftCols(result.rank) *
+        columns.lengths.cwiseInverse().asDiagonal() * svd.v.leftCols(result.rank) *
         (std::sqrt(variance) * values.head(result.rank).cwiseInverse()).asDiagonal());
     return result;
 }

@@ -1,9 +1,9 @@
 #include "host/fit/stack/stack_response.h"
 
+#include "host/spectral/matrix/linear_systems.h"
 #include "reradiant/error.h"
 #include "reradiant/stack_model.h"
 
-#include <Eigen/LU>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -142,8 +142,7 @@ BareMatrix bare_matrix(const UncertainMatrix& under, const Eigen::VectorXd& r,
     bare.guessed = guess_diagonal(r, measured.diagonal(), full);
     const Matrix identity = Matrix::Identity(grid.count, grid.count);
     const Matrix system = identity + r.asDiagonal() * full.value;
-    const Matrix whole =
-        system.transpose().partialPivLu().solve(full.value.transpose()).transpose();
+    const Matrix whole = right_quotient(full.value, system);
     const Matrix gaps = Matrix::Constant(rows, columns, nan_value);
     bare.value = known.select(whole.block(o, i, rows, columns), gaps);
     bare.errors.left = (identity - whole * r.asDiagonal()).middleRows(o, rows);

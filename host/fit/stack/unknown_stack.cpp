@@ -1,9 +1,9 @@
 #include "host/fit/stack/unknown_stack.h"
 
 #include "host/fit/stack/stack_response.h"
+#include "host/spectral/matrix/singular_values.h"
 #include "reradiant/error.h"
 
-#include <Eigen/SVD>
 #include <ceres/crs_matrix.h>
 #include <ceres/dynamic_numeric_diff_cost_function.h>
 #include <ceres/problem.h>
@@ -100,22 +100,19 @@ void judge(const Matrix& jacobian, double variance, const UnknownStack& unknown,
            UnknownStackFit& fit) {
     const Eigen::Index n = unknown.count();
     const Vector lengths = jacobian.colwise().norm().transpose().cwiseMax(1e-300);
-    const Eigen::JacobiSVD<Matrix> svd(jacobian * lengths.cwiseInverse().asDiagonal(),
-                                       Eigen::ComputeThinV);
+    const ThinSvd svd = thin_svd(jacobian * lengths.cwiseInverse().asDiagonal());
     StackEstimate& estimate = fit.estimate;
-    estimate.rank = static_cast<int>(
-        (svd.singularValues().array() > determined * svd.singularValues()(0)).count());
-    fit.root = lengths.cwiseInverse().asDiagonal() * svd.matrixV().leftCols(estimate.rank) *
-               (std::sqrt(variance) * svd.singularValues().head(estimate.rank).cwiseInverse())
-                   .asDiagonal();
+    estimate.rank = static_cast<int>((svd.s.array() > determined * svd.s(0)).count());
+    fit.root = lengths.cwiseInverse().asDiagonal() * svd.v.leftCols(estimate.rank) *
+               (std::sqrt(variance) * svd.s.head(estimate.rank).cwiseInverse()).asDiagonal();
     const Matrix covariance = fit.root * fit.root.transpose();
     estimate.value.resize(n);
     estimate.sigma.resize(n);
     estimate.correlation = Matrix::Identity(n, n);
     for (Eigen::Index k = estimate.rank; k < n; ++k)
         estimate.ambiguities.push_back(
-            fmt::format("the data cannot tell {} apart", moved_by(unknown, svd.matrixV().col(k))));
-    const Matrix lost = svd.matrixV().rightCols(n - estimate.rank);
+            fmt::format("the data cannot tell {} apart", moved_by(unknown, svd.v.col(k))));
+    const Matrix lost = svd.v.rightCols(n - estimate.rank);
     for (Eigen::Index k = 0; k < n; ++k) {
         estimate.names.push_back(unknown.name(k));
         estimate.value(k) = unknown.value(k, fit.numbers(k));

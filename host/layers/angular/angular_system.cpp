@@ -2,8 +2,7 @@
 
 #include "host/layers/angular/scattering_slab.h"
 #include "host/layers/rough/interface_operator.h"
-
-#include <Eigen/LU>
+#include "host/spectral/matrix/linear_systems.h"
 
 #include <algorithm>
 #include <cmath>
@@ -133,7 +132,7 @@ AngularResponse AngularSystem::solve(const SubstrateWeight& weight) const {
         at += m;
     }
     const bool coupled = (links.array() != 0.0).any();
-    const Eigen::MatrixXd values = coupled ? system.partialPivLu().solve(incoming) : incoming;
+    const Eigen::MatrixXd values = coupled ? left_quotient(system, incoming) : incoming;
     AngularResponse response;
     response.incoming = shares_of(values.topRows(first_upper));
     if (scatterers_.front().depth > 0.0) {

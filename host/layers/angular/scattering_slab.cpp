@@ -1,8 +1,7 @@
 #include "host/layers/angular/scattering_slab.h"
 
 #include "host/layers/rough/interface_operator.h"
-
-#include <Eigen/LU>
+#include "host/spectral/matrix/linear_systems.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,8 +75,8 @@ std::shared_ptr<const CellPhase> phase_of(const AngularGrid& grid, double g) {
 SlabOperator thin_layer(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double depth) {
     const auto one = Eigen::MatrixXd::Identity(a.rows(), a.cols());
     const Eigen::MatrixXd less = 0.5 * depth * (a - b), more = 0.5 * depth * (a + b);
-    const Eigen::MatrixXd sum = (one + less).partialPivLu().solve(one - less);
-    const Eigen::MatrixXd difference = (one + more).partialPivLu().solve(one - more);
+    const Eigen::MatrixXd sum = left_quotient(one + less, one - less);
+    const Eigen::MatrixXd difference = left_quotient(one + more, one - more);
     return {0.5 * (sum - difference), 0.5 * (sum + difference)};
 }
 
@@ -106,8 +105,7 @@ SlabOperator scattering_slab(const AngularGrid& grid, double tau, double tau_sca
     SlabOperator slab = thin_layer(a, b, std::ldexp(total, -doublings));
     const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
     for (int k = 0; k < doublings; ++k) {
-        const Eigen::MatrixXd between =
-            (one - slab.back * slab.back).partialPivLu().solve(slab.through);
+        const Eigen::MatrixXd between = left_quotient(one - slab.back * slab.back, slab.through);
         slab.back += slab.through * slab.back * between;
         slab.through = slab.through * between;
     }

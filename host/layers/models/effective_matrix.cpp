@@ -1,10 +1,14 @@
 #include "host/layers/models/effective_matrix.h"
 
+#include "host/spectral/matrix/linear_systems.h"
 #include "reradiant/error.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace reradiant {
 
@@ -19,6 +23,30 @@ namespace {
                       "below 1");
 }
 
+/// Largest modulus of the eigenvalues, which a real Schur form has on its diagonal in blocks of 1 x
+/// 1 and 2 x 2. Eigen's EigenSolver goes the same way, and takes twice as long to compile.
+double spectral_radius(const Eigen::MatrixXd& matrix) {
+    const Eigen::RealSchur<Eigen::MatrixXd> decomposition(matrix, false);
+    if (decomposition.info() != Eigen::Success)
+        return std::numeric_limits<double>::quiet_NaN();
+    const Eigen::MatrixXd& schur = decomposition.matrixT();
+    double radius = 0.0;
+    for (Eigen::Index i = 0; i < schur.rows(); ++i) {
+        double modulus = std::abs(schur(i, i));
+        if (i + 1 < schur.rows() && schur(i + 1, i) != 0.0) {
+            const double half = 0.5 * (schur(i, i) - schur(i + 1, i + 1));
+            modulus =
+                std::hypot(schur(i + 1, i + 1) + half,
+                           std::sqrt(std::abs(half * half + schur(i + 1, i) * schur(i, i + 1))));
+            ++i;
+        }
+        if (!std::isfinite(modulus))
+            return modulus;
+        radius = std::max(radius, modulus);
+    }
+    return radius;
+}
+
 /// Spectral radius, or a bound below 1 where a norm suffices.
 double feedback_radius(const Eigen::MatrixXd& feedback) {
     const Eigen::MatrixXd size = feedback.cwiseAbs();
@@ -27,7 +55,7 @@ double feedback_radius(const Eigen::MatrixXd& feedback) {
         return bound;
     if (feedback.isUpperTriangular(0.0) || feedback.isLowerTriangular(0.0))
         return size.diagonal().maxCoeff();
-    return Eigen::EigenSolver<Eigen::MatrixXd>(feedback, false).eigenvalues().cwiseAbs().maxCoeff();
+    return spectral_radius(feedback);
 }
 
 } // namespace
@@ -48,7 +76,7 @@ Eigen::MatrixXd effective_matrix(const Eigen::MatrixXd& per_band, const Eigen::V
     if (!(radius < 1.0 - 1e-12))
         throw_diverges(radius);
     const Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n, n) - feedback;
-    return system.transpose().partialPivLu().solve(per_band.transpose()).transpose();
+    return right_quotient(per_band, system);
 }
 
 Eigen::MatrixXd SemiseparableMatrix::dense() const {

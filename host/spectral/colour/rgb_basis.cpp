@@ -2,7 +2,7 @@
 
 #include "reradiant/colour.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <stdexcept>
