@@ -26,9 +26,9 @@ std::vector<Xyz> xyz_weights(const WavelengthGrid& grid);
 /// XYZ of a spectrum in the same scale (Y of unit radiance = 1), exact for boxes.
 Xyz xyz_of(const Spectrum& spectrum);
 
-/// CIE standard illuminant by name (A, D50, D55, D65, D75, C, E, FL1..FL12, FL3.1..FL3.15,
-/// HP1..HP5, LED-B1..LED-B5, LED-BH1, LED-RGB1, LED-V1, LED-V2), relative spectral power as in
-/// the CIE table (100 at 560 nm for A and D65). std::invalid_argument lists what exists.
+/// CIE standard illuminant by name (A to C, D50 to D75, E, ID50, ID65, FL1..FL12,
+/// FL3.1..FL3.15, HP1..HP5, LED-B1..LED-V2), relative spectral power as in the CIE table (100 at
+/// 560 nm for A and D65). std::invalid_argument lists what exists.
 Spectrum illuminant(const std::string& name);
 /// Returns the CIE standard illuminant of that name, scaled to the luminance `y` in the scale of
 /// xyz_of.

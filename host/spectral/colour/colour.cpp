@@ -19,12 +19,12 @@ namespace {
 
 /// Names as the files in spectra/illuminants are called; E needs no file.
 constexpr std::array illuminant_names = {
-    "A",      "C",      "D50",    "D55",    "D65",     "D75",      "E",      "FL1",
-    "FL2",    "FL3",    "FL4",    "FL5",    "FL6",     "FL7",      "FL8",    "FL9",
-    "FL10",   "FL11",   "FL12",   "FL3.1",  "FL3.2",   "FL3.3",    "FL3.4",  "FL3.5",
-    "FL3.6",  "FL3.7",  "FL3.8",  "FL3.9",  "FL3.10",  "FL3.11",   "FL3.12", "FL3.13",
-    "FL3.14", "FL3.15", "HP1",    "HP2",    "HP3",     "HP4",      "HP5",    "LED-B1",
-    "LED-B2", "LED-B3", "LED-B4", "LED-B5", "LED-BH1", "LED-RGB1", "LED-V1", "LED-V2"};
+    "A",      "B",      "C",      "D50",     "D55",      "D60",    "D65",    "D75",    "E",
+    "ID50",   "ID65",   "FL1",    "FL2",     "FL3",      "FL4",    "FL5",    "FL6",    "FL7",
+    "FL8",    "FL9",    "FL10",   "FL11",    "FL12",     "FL3.1",  "FL3.2",  "FL3.3",  "FL3.4",
+    "FL3.5",  "FL3.6",  "FL3.7",  "FL3.8",   "FL3.9",    "FL3.10", "FL3.11", "FL3.12", "FL3.13",
+    "FL3.14", "FL3.15", "HP1",    "HP2",     "HP3",      "HP4",    "HP5",    "LED-B1", "LED-B2",
+    "LED-B3", "LED-B4", "LED-B5", "LED-BH1", "LED-RGB1", "LED-V1", "LED-V2"};
 
 /// A colour matching function over [from, to], zero outside its table: exact for its linear pieces.
 struct MatchingFunction {
@@ -38,19 +38,20 @@ struct MatchingFunction {
     }
 };
 
-struct Observer {
+struct StandardEye {
     std::array<MatchingFunction, 3> functions;
     double integral_of_y = 1.0;
 };
 
-const Observer& observer() {
-    static const Observer result = [] {
+const StandardEye& standard_eye() {
+    static const StandardEye result = [] {
         const ColourMatching& table = cie_1931_2_degree();
         const double from = table.wavelengths_nm.front(), to = table.wavelengths_nm.back();
-        Observer made{{MatchingFunction{Spectrum::table(table.wavelengths_nm, table.x), from, to},
-                       MatchingFunction{Spectrum::table(table.wavelengths_nm, table.y), from, to},
-                       MatchingFunction{Spectrum::table(table.wavelengths_nm, table.z), from, to}},
-                      1.0};
+        StandardEye made{
+            {MatchingFunction{Spectrum::table(table.wavelengths_nm, table.x), from, to},
+             MatchingFunction{Spectrum::table(table.wavelengths_nm, table.y), from, to},
+             MatchingFunction{Spectrum::table(table.wavelengths_nm, table.z), from, to}},
+            1.0};
         made.integral_of_y = made.functions[1].integral(from, to);
         return made;
     }();
@@ -71,31 +72,21 @@ std::vector<double> pieces_nm(const Spectrum& spectrum) {
 
 } // namespace
 
-const ColourMatching& cie_1931_2_degree() {
-    static const ColourMatching table = [] {
-        NumberTable read =
-            read_number_table(spectra_directory() / "observers" / "cie-1931-2-degree.csv", 4);
-        return ColourMatching{std::move(read.columns[0]), std::move(read.columns[1]),
-                              std::move(read.columns[2]), std::move(read.columns[3])};
-    }();
-    return table;
-}
-
 std::vector<Xyz> xyz_weights(const WavelengthGrid& grid) {
     std::vector<Xyz> weights;
     for (int band = 0; band < grid.count; ++band) {
         Xyz weight{};
         for (std::size_t c = 0; c < 3; ++c)
-            weight[c] = observer().functions[c].integral(grid.lower_edge_nm(band),
-                                                         grid.upper_edge_nm(band)) /
-                        observer().integral_of_y;
+            weight[c] = standard_eye().functions[c].integral(grid.lower_edge_nm(band),
+                                                             grid.upper_edge_nm(band)) /
+                        standard_eye().integral_of_y;
         weights.push_back(weight);
     }
     return weights;
 }
 
 Xyz xyz_of(const Spectrum& spectrum) {
-    const Observer& eye = observer();
+    const StandardEye& eye = standard_eye();
     const Spectrum smooth = spectrum.without_lines();
     const std::vector<double> pieces = pieces_nm(smooth);
     Xyz sum{};
