@@ -1,0 +1,166 @@
+#include "host/measure/geometry_matrix.h"
+
+#include "host/layers/models/layered_bsdf.h"
+#include "host/layers/stack/directions.h"
+#include "host/measure/measure_memory.h"
+#include "host/measure/measure_substrate.h"
+#include "host/scene/model/closed_model.h"
+#include "host/scene/model/model_choice.h"
+#include "reradiant/error.h"
+#include "reradiant/measure.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+namespace reradiant {
+
+namespace {
+
+using Kind = ViewingGeometry::Kind;
+
+double radians(double degrees) {
+    return degrees * std::numbers::pi / 180.0;
+}
+
+[[noreturn]] void refuse(const std::string& text) {
+    throw std::invalid_argument(fmt::format(
+        "there is no geometry '{}'; there are 45/0, 0/45, 8/d, d/8 (specular included), 8/de, de/8 "
+        "(excluded), and THETA_I:THETA_O[:PHI] in degrees, thetas from 0 to below 90",
+        text));
+}
+
+std::vector<double> angles(const std::string& text) {
+    std::vector<double> result;
+    const char *at = text.data(), *const end = at + text.size();
+    while (true) {
+        double value = 0.0;
+        const auto [stop, error] = std::from_chars(at, end, value);
+        if (error != std::errc() || !std::isfinite(value))
+            refuse(text);
+        result.push_back(value);
+        if (stop == end)
+            return result;
+        if (*stop != ':')
+            refuse(text);
+        at = stop + 1;
+    }
+}
+
+/// What goes into the port of the light that interfaces, flakes and a conductor reflect, unit 1:
+/// Simpson's rule over the cone around the mirror's direction. The rings lie closer towards its
+/// axis, where narrow lobes have their peak.
+double into_port(const StackBsdf& band, double theta) {
+    constexpr int rings = 64, sectors = 32;
+    const kernels::Vec3 wi = direction_at(std::cos(theta), 0.0);
+    double sum = 0.0;
+    for (int ring = 1; ring <= rings; ++ring) {
+        const double u = static_cast<double>(ring) / rings;
+        const double off = radians(specular_port_deg) * u * u * u;
+        const double weight = (ring == rings ? 1.0 : ring % 2 == 1 ? 4.0 : 2.0) * 3.0 * u * u;
+        for (int sector = 0; sector < sectors; ++sector) {
+            const double turn = 2.0 * std::numbers::pi * (sector + 0.5) / sectors;
+            const double x = std::sin(off) * std::cos(turn), y = std::sin(off) * std::sin(turn);
+            const double cos_o = std::cos(off) * std::cos(theta) + x * std::sin(theta);
+            const double away = std::cos(off) * std::sin(theta) - x * std::cos(theta);
+            const kernels::Vec3 wo = direction_at(cos_o, std::atan2(y, -away));
+            sum +=
+                weight * std::sin(off) * cos_o * (band.specular(wi, wo) + band.conductor(wi, wo));
+        }
+    }
+    return sum * radians(specular_port_deg) / (3.0 * rings) * 2.0 * std::numbers::pi / sectors;
+}
+
+Eigen::MatrixXd by_closed_model(const Material& material, const SubstrateValues& substrate,
+                                const WavelengthGrid& bands, const ViewingGeometry& geometry,
+                                Model model) {
+    const LayeredBsdf surface(material.stack, substrate, bands, closed_model(model));
+    const double theta = radians(geometry.theta_i_deg);
+    if (geometry.kind == Kind::Directional)
+        return std::numbers::pi * surface.eval(direction_at(std::cos(theta), 0.0),
+                                               direction_at(std::cos(radians(geometry.theta_o_deg)),
+                                                            radians(geometry.phi_deg)));
+    Eigen::MatrixXd values = surface.diffuse_albedo(std::cos(theta));
+    for (int band = 0; band < bands.count; ++band) {
+        const StackBsdf& stack = surface.at(band);
+        values(band, band) += stack.specular_albedo(std::cos(theta));
+        if (!geometry.specular_included)
+            values(band, band) -= stack.delta(std::cos(theta)) + into_port(stack, theta);
+    }
+    return values;
+}
+
+Eigen::MatrixXd by_walk(const Material& material, const SubstrateValues& substrate,
+                        const WavelengthGrid& bands, const ViewingGeometry& geometry) {
+    if (!geometry.specular_included)
+        throw_input_error({},
+                          "specular light is excluded by closed models only, and this material is "
+                          "walked",
+                          "ask for --geometry 8/d or 45/0");
+    MeasureRequest request;
+    request.model = Model::Walk;
+    request.theta_i_deg = {geometry.theta_i_deg};
+    request.theta_o_deg = {geometry.theta_o_deg};
+    request.phi_deg = {geometry.phi_deg};
+    request.hemispherical = geometry.kind != Kind::Directional;
+    const Measurement measured = measure_substrate(material.stack, substrate, bands, request);
+    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(bands.count, bands.count);
+    for (const MeasureRow& row : measured.rows)
+        values(bands.band_of(row.lambda_o_nm), bands.band_of(row.lambda_i_nm)) += row.value;
+    return request.hemispherical ? values : Eigen::MatrixXd(std::numbers::pi * values);
+}
+
+} // namespace
+
+ViewingGeometry viewing_geometry(const std::string& text) {
+    if (text == "45/0")
+        return {};
+    if (text == "0/45")
+        return {.theta_i_deg = 0.0, .theta_o_deg = 45.0};
+    if (text == "8/d" || text == "8/de")
+        return {.kind = Kind::DirectionalHemispherical,
+                .theta_i_deg = 8.0,
+                .specular_included = text == "8/d"};
+    if (text == "d/8" || text == "de/8")
+        return {.kind = Kind::HemisphericalDirectional,
+                .theta_i_deg = 8.0,
+                .specular_included = text == "d/8"};
+    const std::vector<double> given = angles(text);
+    if (given.size() < 2 || given.size() > 3)
+        refuse(text);
+    for (int k = 0; k < 2; ++k)
+        if (!(given[static_cast<std::size_t>(k)] >= 0.0 &&
+              given[static_cast<std::size_t>(k)] < 90.0))
+            refuse(text);
+    return {.theta_i_deg = given[0],
+            .theta_o_deg = given[1],
+            .phi_deg = given.size() > 2 ? given[2] : 0.0};
+}
+
+ReradiationMatrix geometry_matrix(const Material& material, const ViewingGeometry& geometry) {
+    const ModelChoice choice = choose_model(material, Model::Auto, ModelUse::Measure);
+    const WavelengthGrid bands = measured_bands(material, {});
+    check_measure_memory(bands, material.substrate.is_fluorescent(), {});
+    SubstrateValues substrate = measured_substrate(material.substrate, bands);
+    // Reciprocity: light that comes from everywhere and is seen at 8 degrees is light that comes
+    // at 8 degrees and goes everywhere, with excitation and emission exchanged.
+    const bool is_backwards = geometry.kind == Kind::HemisphericalDirectional;
+    if (is_backwards && substrate.matrix.size() > 0)
+        substrate.matrix.transposeInPlace();
+    Eigen::MatrixXd values =
+        choice.model == Model::Walk
+            ? by_walk(material, substrate, bands, geometry)
+            : by_closed_model(material, substrate, bands, geometry, choice.model);
+    if (is_backwards)
+        values.transposeInPlace();
+    ReradiationMatrix matrix;
+    matrix.emission = matrix.excitation = bands;
+    matrix.values = std::move(values);
+    return matrix;
+}
+
+} // namespace reradiant

@@ -1,0 +1,127 @@
+#include "host/measure/geometry_matrix.h"
+
+#include "reradiant/measure.h"
+#include "reradiant/scene_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <stdexcept>
+
+using namespace reradiant;
+
+namespace {
+
+Material preset(const std::string& name) {
+    return load_material(std::filesystem::path(RERADIANT_SOURCE_DIR) / "spectra" / "materials" /
+                         (name + ".toml"));
+}
+
+Eigen::MatrixXd factors(const Material& material, const std::string& geometry) {
+    return geometry_matrix(material, viewing_geometry(geometry)).values;
+}
+
+/// Radiance factors of all diffuse light that comes from everywhere and is seen at 8 degrees:
+/// Gauss-Legendre's rule of 5 points on pieces of the squared sine.
+Eigen::MatrixXd by_quadrature(const Material& material) {
+    constexpr std::array<double, 5> x = {0.04691007703066802, 0.23076534494715845, 0.5,
+                                         0.7692346550528415, 0.9530899229693319};
+    constexpr std::array<double, 5> w = {0.11846344252809454, 0.23931433524968324,
+                                         0.28444444444444444, 0.23931433524968324,
+                                         0.11846344252809454};
+    constexpr int pieces = 12;
+    MeasureRequest request;
+    request.theta_o_deg = {8.0};
+    request.phi_deg = {90.0};
+    request.theta_i_deg.clear();
+    for (int piece = 0; piece < pieces; ++piece)
+        for (const double node : x) {
+            // Towards grazing incidence the transmission has a root's slope: cos = v squared.
+            const double v = (piece + node) / pieces;
+            request.theta_i_deg.push_back(std::acos(v * v) * 180.0 / std::numbers::pi);
+        }
+    const Measurement measured = measure_material(material, request);
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(measured.bands.count, measured.bands.count);
+    for (const MeasureRow& row : measured.rows) {
+        if (row.part != MeasuredPart::Diffuse)
+            continue;
+        const double cosine = std::cos(row.theta_i_deg * std::numbers::pi / 180.0);
+        const double v = std::sqrt(cosine) * pieces;
+        const double place = v - std::floor(v);
+        std::size_t node = 0;
+        for (std::size_t k = 1; k < 5; ++k)
+            if (std::abs(x[k] - place) < std::abs(x[node] - place))
+                node = k;
+        // 2 pi cos d(cos), and d(cos) = 2 v dv.
+        sum(measured.bands.band_of(row.lambda_o_nm), measured.bands.band_of(row.lambda_i_nm)) +=
+            2.0 * std::numbers::pi * cosine * 2.0 * std::sqrt(cosine) * w[node] / pieces *
+            row.value;
+    }
+    return sum;
+}
+
+} // namespace
+
+TEST(GeometryMatrix, NamesAreRead) {
+    EXPECT_EQ(viewing_geometry("45/0").theta_i_deg, 45.0);
+    EXPECT_EQ(viewing_geometry("0/45").theta_o_deg, 45.0);
+    EXPECT_FALSE(viewing_geometry("8/de").specular_included);
+    EXPECT_EQ(viewing_geometry("20:60:180").phi_deg, 180.0);
+    for (const char* text : {"", "45", "45/8", "90:0", "0:90", "-1:0", "1:2:3:4", "a:b",
+                             "45:", ":0", "nan:0", "45:0:x"})
+        EXPECT_THROW(viewing_geometry(text), std::invalid_argument) << text;
+}
+
+TEST(GeometryMatrix, BareMaterialIsItsMatrixInEveryGeometry) {
+    const Material bare = preset("neon-orange-bare");
+    const Eigen::MatrixXd expected = factors(bare, "45/0");
+    for (const char* geometry : {"0/45", "8/d", "d/8", "8/de", "de/8", "20:60:90"})
+        EXPECT_LT((factors(bare, geometry) - expected).cwiseAbs().maxCoeff(), 1e-12) << geometry;
+}
+
+// A varnished sample at 45/0: light goes in at 45 degrees at its own wavelength and out at 0 at the
+// wavelength of emission, so that 0/45 is the transpose where the substrate's matrix is transposed,
+// and differs from 45/0 by transmissions alone.
+TEST(GeometryMatrix, DirectionalIsWhatMeasureSays) {
+    const Material varnished = preset("neon-orange-varnished");
+    MeasureRequest request;
+    request.theta_i_deg = {45.0};
+    const Measurement measured = measure_material(varnished, request);
+    Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(measured.bands.count, measured.bands.count);
+    for (const MeasureRow& row : measured.rows)
+        expected(measured.bands.band_of(row.lambda_o_nm),
+                 measured.bands.band_of(row.lambda_i_nm)) += std::numbers::pi * row.value;
+    EXPECT_LT((factors(varnished, "45/0") - expected).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+// The transposed material seen from 8 degrees, against the integral over incident directions; the
+// surface's own reflection is that of 8/d. The rule's error is below 1e-6.
+TEST(GeometryMatrix, DiffuseIlluminationIsTheIntegralOverIncidence) {
+    const Material varnished = preset("neon-orange-varnished");
+    const Eigen::MatrixXd expected = by_quadrature(varnished);
+    const Eigen::MatrixXd excluded = factors(varnished, "de/8");
+    EXPECT_LT((excluded - expected).cwiseAbs().maxCoeff(), 1e-6);
+    const Eigen::MatrixXd mirror = factors(varnished, "d/8") - excluded;
+    EXPECT_LT(
+        (mirror - (factors(varnished, "8/d") - factors(varnished, "8/de"))).cwiseAbs().maxCoeff(),
+        1e-12);
+    EXPECT_TRUE(mirror.isDiagonal(1e-12));
+    EXPECT_GT(mirror(0, 0), 0.03);
+    EXPECT_LT(mirror(0, 0), 0.06);
+}
+
+// At 8 degrees Fresnel's reflectance of a smooth IOR of 1.5 is 0.04 to four digits, all of it in
+// the mirror; of a surface so rough that its lobe is far wider than the port, little is excluded.
+TEST(GeometryMatrix, ThePortTakesAwayWhatTheLobePutsThere) {
+    Material smooth = preset("fluorescent-orange-smooth"),
+             rough = preset("fluorescent-orange-rough");
+    const auto excluded = [](const Material& material) {
+        return (factors(material, "8/d") - factors(material, "8/de")).eval();
+    };
+    EXPECT_NEAR(excluded(smooth)(20, 20), 0.04, 0.005);
+    EXPECT_GT(excluded(rough)(20, 20), 0.0);
+    EXPECT_LT(excluded(rough)(20, 20), excluded(smooth)(20, 20));
+    EXPECT_TRUE(excluded(rough).isDiagonal(1e-12));
+}
