@@ -160,3 +160,63 @@ TEST_F(SynthAndColour, AnEmptyNameOfAnIlluminantIsRefused) {
         EXPECT_NE(result.errors.find("a name is missing"), std::string::npos) << result.errors;
     }
 }
+
+TEST_F(SynthAndColour, LampsObserversAndIndicesHaveTheirKeys) {
+    const std::string orange = "colour " + matrices + "synthetic-orange.csv ";
+    put("lamp.csv", "nm,value\n300,1\n830,1\n");
+    ASSERT_EQ(run(orange +
+                  "--illuminant D65,D:5000,M2,D65+20*L:365 --lamp lamp.csv "
+                  "--observer 1931-2,1964-10 --against " +
+                  matrices + "synthetic-green.csv --json out.json")
+                  .exit_code,
+              0);
+    const auto all = json("out.json");
+    EXPECT_EQ(all.size(), 10u);
+    const auto& d65 = all["D65/1964-10"];
+    for (const char* key : {"XYZ", "xy", "Lab", "LCh", "whiteness_cie", "tint_cie", "r457",
+                            "whiteness_e313", "yellowness_e313"}) {
+        EXPECT_TRUE(d65.contains(key)) << key;
+        EXPECT_TRUE(d65["uv_excluded"].contains(key)) << key;
+    }
+    for (const char* key : {"cie1976", "cie1994", "ciede2000", "cmc21"})
+        EXPECT_GT(d65["delta_e"][key], 1.0) << key;
+    EXPECT_EQ(all["D65+20*L:365/1931-2"]["sums"], "1 nm");
+    EXPECT_GT(all["D65+20*L:365/1931-2"]["uv_share"], d65["uv_share"]);
+    EXPECT_FALSE(all["D:5000/1931-2"].contains("whiteness_cie"));
+    EXPECT_FALSE(d65.contains("metamerism"));
+    EXPECT_GT(all["M2/1931-2"]["metamerism"], 0.0);
+    // Without ultraviolet light from the start nothing is left to exclude.
+    ASSERT_EQ(run(orange + "--uv-cut 420 --json cut.json").exit_code, 0);
+    const auto cut = json("cut.json")["D65"];
+    EXPECT_EQ(cut["XYZ"], cut["uv_excluded"]["XYZ"]);
+    EXPECT_EQ(cut["uv_share"], 0.0);
+}
+
+TEST_F(SynthAndColour, MaterialsAreSeenInAGeometry) {
+    ASSERT_EQ(
+        run("colour --preset fluorescent-orange-smooth --geometry 8/d --json in.json").exit_code,
+        0);
+    ASSERT_EQ(
+        run("colour --preset fluorescent-orange-smooth --geometry 8/de --json out.json").exit_code,
+        0);
+    // The mirror of the coat adds the same to X, Y and Z of a white: some 4 %.
+    const double more = json("in.json")["D65"]["XYZ"][1].get<double>() -
+                        json("out.json")["D65"]["XYZ"][1].get<double>();
+    EXPECT_NEAR(more, 4.0, 0.5);
+    expect_failure(2, "colour --preset fluorescent-orange-smooth --geometry 95:0", "--geometry: ");
+    expect_failure(2, "colour " + matrices + "synthetic-orange.csv --geometry 8/d",
+                   "synthetic-orange.csv: ");
+    expect_failure(2, "colour", "MATERIAL.toml");
+    expect_failure(2, "colour --preset nothing", "'nothing'");
+}
+
+TEST_F(SynthAndColour, BadLampsAndObserversNameTheirOption) {
+    const std::string orange = "colour " + matrices + "synthetic-orange.csv ";
+    put("negative.csv", "nm,value\n400,1\n500,-1\n700,1\n");
+    expect_failure(2, orange + "--illuminant D:300", "--illuminant: ");
+    expect_failure(2, orange + "--illuminant D65,D65", "asked for twice");
+    expect_failure(2, orange + "--observer 2", "--observer: ");
+    expect_failure(2, orange + "--uv-cut 20", "--uv-cut: ");
+    expect_failure(2, orange + "--lamp negative.csv", "negative.csv: the lamp is negative");
+    expect_failure(2, orange + "--lamp missing.csv", "missing.csv: ");
+}

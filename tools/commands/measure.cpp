@@ -7,7 +7,6 @@
 #include "host/report/progress.h"
 #include "host/scene/model/named_files.h"
 #include "reradiant/error.h"
-#include "reradiant/paths.h"
 #include "reradiant/scene_file.h"
 #include "tools/program/command.h"
 #include "tools/program/interrupt.h"
@@ -19,7 +18,6 @@
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -47,14 +45,7 @@ struct MeasureOptions {
 };
 
 std::filesystem::path material_file(const MeasureOptions& options) {
-    if (options.preset.empty())
-        return options.material;
-    const std::vector<std::string> known = preset_names();
-    if (std::find(known.begin(), known.end(), options.preset) == known.end()) {
-        throw_input_error({}, fmt::format("no preset is called '{}'", options.preset),
-                          fmt::format("there are: {}", fmt::join(known, ", ")));
-    }
-    return spectra_directory() / "materials" / (options.preset + ".toml");
+    return options.preset.empty() ? options.material : preset_file(options.preset);
 }
 
 /// Returns all that a walk depends on, by name. The numbers of the material stand for the files

@@ -2,9 +2,13 @@
 
 #include "host/render/plan/wavelength_text.h"
 #include "reradiant/error.h"
+#include "reradiant/paths.h"
+#include "reradiant/scene_file.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <stdexcept>
@@ -76,6 +80,14 @@ SampleRange parse_sample_range_option(const std::string& text) {
         throw_input_error({}, fmt::format("--sample-range '{}' is not a range", text),
                           "write A:B with A < B for the samples A to B - 1");
     return {*first, *end};
+}
+
+std::filesystem::path preset_file(const std::string& name) {
+    const std::vector<std::string> known = preset_names();
+    if (std::find(known.begin(), known.end(), name) == known.end())
+        throw_input_error({}, fmt::format("no preset is called '{}'", name),
+                          fmt::format("there are: {}", fmt::join(known, ", ")));
+    return spectra_directory() / "materials" / (name + ".toml");
 }
 
 } // namespace reradiant

@@ -6,6 +6,7 @@
 #include "reradiant/wavelength_plan.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace reradiant {
@@ -22,5 +23,8 @@ WavelengthOptions parse_wavelengths_option(const std::string& text);
 
 /// --sample-range A:B with A < B
 SampleRange parse_sample_range_option(const std::string& text);
+
+/// --preset NAME: the material's file.
+std::filesystem::path preset_file(const std::string& name);
 
 } // namespace reradiant

@@ -92,9 +92,10 @@ py::object colour(const ReradiationMatrix& matrix, const std::string& name, cons
     ColourSum sum = ColourSum::Automatic;
     if (e308)
         sum = *e308 ? ColourSum::E308 : ColourSum::Bands;
-    ColourReport report = colour_report(matrix, name, light, sum);
+    const Lamp lamp{.name = name, .light = light};
+    ColourReport report = colour_report(matrix, lamp, sum);
     if (against != nullptr)
-        report.ciede2000 = ciede2000(report.colour.lab, colour_of_matrix(*against, light, sum).lab);
+        compare_with(report, colour_report(*against, lamp, sum));
     return python_value(colour_report_json(report));
 }
 

@@ -4,6 +4,46 @@
 
 namespace reradiant {
 
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+IndexedColour indexed(MatrixColour colour, const std::string& lamp, Observer observer) {
+    IndexedColour result;
+    const bool has_whiteness = lamp == "D65" || lamp == "C";
+    const bool is_classic = observer == Observer::Cie1931Deg2 || observer == Observer::Cie1964Deg10;
+    if (has_whiteness && is_classic)
+        result.whiteness = cie_whiteness(colour.xyz, colour.white, observer);
+    result.e313 = astm_e313(colour.xyz, lamp, observer);
+    if (has_whiteness)
+        result.r457 = r457(colour);
+    result.lch = lab_to_lch(colour.lab);
+    result.colour = std::move(colour);
+    return result;
+}
+
+Json indices_json(const IndexedColour& of) {
+    Json json = {
+        {"XYZ", of.colour.xyz}, {"xy", of.colour.xy}, {"Lab", of.colour.lab}, {"LCh", of.lch}};
+    if (of.whiteness)
+        json.update({{"whiteness_cie", of.whiteness->whiteness}, {"tint_cie", of.whiteness->tint}});
+    if (of.r457)
+        json["r457"] = *of.r457;
+    if (of.e313)
+        json.update(
+            {{"whiteness_e313", of.e313->whiteness}, {"yellowness_e313", of.e313->yellowness}});
+    return json;
+}
+
+Json differences_json(const ColourDifferences& differences) {
+    return {{"cie1976", differences.cie1976},
+            {"cie1994", differences.cie1994},
+            {"ciede2000", differences.ciede2000},
+            {"cmc21", differences.cmc21}};
+}
+
+} // namespace
+
 std::size_t ColourReport::brightest_band() const {
     std::size_t best = 0;
     for (std::size_t o = 0; o < colour.total.size(); ++o)
@@ -12,39 +52,53 @@ std::size_t ColourReport::brightest_band() const {
     return best;
 }
 
-ColourReport colour_report(const ReradiationMatrix& matrix, const std::string& name,
-                           const Spectrum& illuminant, ColourSum sum) {
-    ColourReport report{.illuminant = name,
-                        .colour = colour_of_matrix(matrix, illuminant, sum),
-                        .whiteness = {},
-                        .ciede2000 = {},
-                        .polygons = {},
-                        .warnings = colour_warnings(matrix, illuminant, name)};
-    if (name == "D65" || name == "C")
-        report.whiteness = cie_whiteness(report.colour.xyz, report.colour.white);
+ColourReport colour_report(const ReradiationMatrix& matrix, const Lamp& lamp, ColourSum sum,
+                           Observer observer) {
+    ColourConditions conditions{.observer = observer, .weighted_by = lamp.weighted_by};
+    ColourReport report;
+    static_cast<IndexedColour&>(report) =
+        indexed(colour_of_matrix(matrix, lamp.light, sum, conditions), lamp.name, observer);
+    conditions.excites_from_nm = uv_excluded_from_nm;
+    // Summed as the whole is, so that the difference is the fluorescence alone.
+    const ColourSum same =
+        sum == ColourSum::Automatic && !report.colour.at_nanometres ? ColourSum::Bands : sum;
+    report.uv_excluded =
+        indexed(colour_of_matrix(matrix, lamp.light, same, conditions), lamp.name, observer);
+    report.illuminant = lamp.name;
+    report.observer = observer;
+    report.ultraviolet_share = ultraviolet_share(lamp.light);
+    report.warnings = colour_warnings(matrix, lamp.light, lamp.name, observer, lamp.cut_below_nm);
     return report;
+}
+
+void compare_with(ColourReport& report, const ColourReport& reference) {
+    report.differences = colour_differences(reference.colour.lab, report.colour.lab);
 }
 
 nlohmann::ordered_json colour_report_json(const ColourReport& report) {
     const MatrixColour& colour = report.colour;
     const std::size_t brightest = report.brightest_band();
-    nlohmann::ordered_json json = {
-        {"XYZ", colour.xyz},
-        {"xy", colour.xy},
-        {"Lab", colour.lab},
-        {"white_XYZ", colour.white},
-        {"sums", colour.at_nanometres ? "1 nm" : "bands"},
-        {"luminance_factor",
-         {{"total", colour.xyz[1] / 100.0},
-          {"reflected", colour.luminance_reflected / 100.0},
-          {"luminescent", (colour.xyz[1] - colour.luminance_reflected) / 100.0}}},
-        {"largest_beta_T", {{"value", colour.total[brightest]}, {"nm", colour.nm[brightest]}}}};
+    Json json = indices_json(report);
+    json.update(
+        {{"white_XYZ", colour.white},
+         {"sums", colour.at_nanometres ? "1 nm" : "bands"},
+         {"luminance_factor",
+          {{"total", colour.xyz[1] / 100.0},
+           {"reflected", colour.luminance_reflected / 100.0},
+           {"luminescent", (colour.xyz[1] - colour.luminance_reflected) / 100.0}}},
+         {"largest_beta_T", {{"value", colour.total[brightest]}, {"nm", colour.nm[brightest]}}},
+         {"observer", observer_name(report.observer)},
+         {"uv_share", report.ultraviolet_share},
+         {"uv_excluded", indices_json(report.uv_excluded)}});
     if (report.whiteness)
         json.update({{"whiteness", report.whiteness->whiteness},
                      {"tint", report.whiteness->tint},
                      {"whiteness_within_limits", report.whiteness->within_limits}});
-    if (report.ciede2000)
-        json["ciede2000"] = *report.ciede2000;
+    if (report.differences)
+        json.update({{"delta_e", differences_json(*report.differences)},
+                     {"ciede2000", report.differences->ciede2000}});
+    if (report.metamerism)
+        json["metamerism"] = *report.metamerism;
     for (const PolygonVerdict& verdict : report.polygons)
         json["polygons"].push_back({{"name", verdict.polygon.name},
                                     {"passes", verdict.result.passes()},

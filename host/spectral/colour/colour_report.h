@@ -1,6 +1,8 @@
 #pragma once
 
+#include "host/spectral/colour/colour_indices.h"
 #include "host/spectral/colour/colour_polygons.h"
+#include "host/spectral/colour/lamp.h"
 #include "reradiant/colour_of_matrix.h"
 
 #include <nlohmann/json.hpp>
@@ -16,12 +18,24 @@ struct PolygonVerdict {
     PolygonResult result;
 };
 
-/// All that is said about a matrix under one illuminant.
-struct ColourReport {
-    std::string illuminant;
+/// A colour and the indices that are defined for its lamp and observer.
+struct IndexedColour {
     MatrixColour colour;
-    std::optional<Whiteness> whiteness; ///< only where it is defined: D65 and C
-    std::optional<double> ciede2000;    ///< to another matrix, when there is one
+    std::array<double, 3> lch{};
+    std::optional<Whiteness> whiteness; ///< of D65 and C, observers of 1931 and 1964
+    std::optional<E313> e313;           ///< the same
+    std::optional<double> r457;         ///< of D65 and C
+};
+
+/// All that is said about a matrix under one lamp, for one observer.
+struct ColourReport : IndexedColour {
+    std::string illuminant; ///< the lamp's name
+    Observer observer = Observer::Cie1931Deg2;
+    double ultraviolet_share = 0.0;
+    /// Without what light below uv_excluded_from_nm excites.
+    IndexedColour uv_excluded;
+    std::optional<ColourDifferences> differences; ///< to another matrix, when there is one
+    std::optional<double> metamerism;             ///< of the two, from the first lamp to this
     std::vector<PolygonVerdict> polygons;
     std::vector<std::string> warnings;
 
@@ -29,10 +43,15 @@ struct ColourReport {
     std::size_t brightest_band() const;
 };
 
-/// Colour, whiteness and warnings; `name` is that of the illuminant. std::invalid_argument as
-/// colour_of_matrix.
-ColourReport colour_report(const ReradiationMatrix& matrix, const std::string& name,
-                           const Spectrum& illuminant, ColourSum sum);
+/// The filter that paper laboratories exclude ultraviolet light with.
+inline constexpr double uv_excluded_from_nm = 420.0;
+
+/// Colour, indices and warnings. std::invalid_argument as colour_of_matrix.
+ColourReport colour_report(const ReradiationMatrix& matrix, const Lamp& lamp, ColourSum sum,
+                           Observer observer = Observer::Cie1931Deg2);
+
+/// Sets the differences of a report from that of a reference under the same lamp.
+void compare_with(ColourReport& report, const ColourReport& reference);
 
 /// Returns what `colour --json` writes for one illuminant.
 nlohmann::ordered_json colour_report_json(const ColourReport& report);
