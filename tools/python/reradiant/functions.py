@@ -258,8 +258,10 @@ def _stack(stack: Any) -> Any:
 
 def colour(matrix: Any, illuminant: Union[str, Sequence[str], Mapping[str, Spectrum]] = "D65", *,
            e308: Optional[bool] = None, against: Any = None) -> Dict[str, Dict[str, Any]]:
-    """The colour of a matrix: XYZ (perfect diffuser Y = 100), xy, Lab, whiteness, radiance factors
-    and, with `against`, CIEDE2000 to another matrix.
+    """The colour of a matrix for the CIE 1931 observer: XYZ (perfect diffuser Y = 100), xy, Lab,
+    LCh, the indices of white and yellow that the lamp's name defines, with and without the
+    fluorescence that light below 420 nm excites, radiance factors and, with `against`, differences
+    from another matrix.
 
     Parameters
     ----------
