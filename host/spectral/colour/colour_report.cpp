@@ -35,6 +35,16 @@ Json indices_json(const IndexedColour& of) {
     return json;
 }
 
+Json polygons_json(const std::vector<PolygonVerdict>& polygons) {
+    Json json;
+    for (const PolygonVerdict& verdict : polygons)
+        json.push_back({{"name", verdict.polygon.name},
+                        {"passes", verdict.result.passes()},
+                        {"chromaticity", verdict.result.chromaticity},
+                        {"luminance_factor", verdict.result.luminance_factor}});
+    return json;
+}
+
 Json differences_json(const ColourDifferences& differences) {
     return {{"cie1976", differences.cie1976},
             {"cie1994", differences.cie1994},
@@ -99,11 +109,8 @@ nlohmann::ordered_json colour_report_json(const ColourReport& report) {
                      {"ciede2000", report.differences->ciede2000}});
     if (report.metamerism)
         json["metamerism"] = *report.metamerism;
-    for (const PolygonVerdict& verdict : report.polygons)
-        json["polygons"].push_back({{"name", verdict.polygon.name},
-                                    {"passes", verdict.result.passes()},
-                                    {"chromaticity", verdict.result.chromaticity},
-                                    {"luminance_factor", verdict.result.luminance_factor}});
+    if (!report.polygons.empty())
+        json["polygons"] = polygons_json(report.polygons);
     json.update({{"nm", colour.nm},
                  {"beta_T", colour.total},
                  {"beta_R", colour.reflected},

@@ -39,7 +39,8 @@ bool is_linear_between(const std::vector<double>& nodes_nm, const Spectrum& spec
 }
 
 std::vector<double> with_nanometres(std::vector<double> nodes_nm) {
-    for (double nm = std::ceil(nodes_nm.front()); nm < nodes_nm.back(); nm += 1.0)
+    const double from_nm = nodes_nm.front(), to_nm = nodes_nm.back();
+    for (double nm = std::ceil(from_nm); nm < to_nm; nm += 1.0)
         nodes_nm.push_back(nm);
     std::sort(nodes_nm.begin(), nodes_nm.end());
     nodes_nm.erase(std::unique(nodes_nm.begin(), nodes_nm.end()), nodes_nm.end());
