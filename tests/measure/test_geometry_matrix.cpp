@@ -125,3 +125,18 @@ TEST(GeometryMatrix, ThePortTakesAwayWhatTheLobePutsThere) {
     EXPECT_LT(excluded(rough)(20, 20), excluded(smooth)(20, 20));
     EXPECT_TRUE(excluded(rough).isDiagonal(1e-12));
 }
+
+// Nothing is absorbed, so that all light comes back; the interreflections are summed in closed
+// form.
+TEST(GeometryMatrix, AWhiteLosslessStackSendsAllBack) {
+    Material white = preset("glossy-paint");
+    white.substrate.reflectance = Spectrum::constant(1.0);
+    const auto off = [&](const char* geometry) {
+        const Eigen::MatrixXd values = factors(white, geometry);
+        return (values - Eigen::MatrixXd::Identity(values.rows(), values.cols()))
+            .cwiseAbs()
+            .maxCoeff();
+    };
+    EXPECT_LT(off("8/d"), 1e-6);
+    EXPECT_LT(off("d/8"), 1e-6);
+}
