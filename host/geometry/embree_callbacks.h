@@ -4,6 +4,7 @@
 #include "host/geometry/primitives.h"
 #include "host/geometry/surfaces.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,10 +13,14 @@
 namespace reradiant {
 
 /// Returns the bounds for Embree, which are in single precision: each is rounded outwards, and
-/// widened a little more because a flat box is tested with rounding too.
+/// widened a little more because a flat box is tested with rounding too, also after a surface was
+/// found that lies in it.
 inline RTCBounds outer_bounds(const Box& box) {
-    const auto widen = [](double value, double sign) {
-        return static_cast<float>(value + sign * (std::fabs(value) * 2.5e-7 + 1e-35));
+    const double extent =
+        std::max({box.upper.x - box.lower.x, box.upper.y - box.lower.y, box.upper.z - box.lower.z});
+    const auto widen = [extent](double value, double sign) {
+        return static_cast<float>(value +
+                                  sign * (std::fabs(value) * 2.5e-7 + extent * 1e-5 + 1e-35));
     };
     RTCBounds bounds{};
     bounds.lower_x = widen(box.lower.x, -1.0);
@@ -46,6 +51,19 @@ void bounds_callback(const RTCBoundsFunctionArguments* arguments) {
         primitive_of<Primitive>(arguments->geometryUserPtr, arguments->primID).bounds());
 }
 
+/// True where a hit at `t` takes the place of the ray's nearest so far: it is nearer, or as near
+/// (in single precision, which Embree compares) and of a shape that comes earlier. Where surfaces
+/// coincide the result then does not hang on the order in which Embree finds them, which depends on
+/// the other rays of a packet.
+inline bool takes_place(float t, RTCRayN* rays, RTCHitN* hits, unsigned int count, unsigned int i,
+                        unsigned int shape, unsigned int primitive) {
+    const float nearest = RTCRayN_tfar(rays, count, i);
+    const unsigned int found = RTCHitN_geomID(hits, count, i);
+    if (t != nearest || found == RTC_INVALID_GEOMETRY_ID)
+        return t < nearest;
+    return shape < found || (shape == found && primitive < RTCHitN_primID(hits, count, i));
+}
+
 template <typename Primitive>
 void intersect_callback(const RTCIntersectFunctionNArguments* arguments) {
     const auto& primitive = primitive_of<Primitive>(arguments->geometryUserPtr, arguments->primID);
@@ -56,8 +74,11 @@ void intersect_callback(const RTCIntersectFunctionNArguments* arguments) {
     for (unsigned int i = 0; i < count; ++i) {
         if (arguments->valid[i] == 0)
             continue;
-        const double t = primitive.intersect(ray_of(rays, count, i));
-        if (t < 0.0)
+        Ray ray = ray_of(rays, count, i);
+        ray.t_far *= 1.0 + 1e-7; // what is as near in single precision, too
+        const double t = primitive.intersect(ray);
+        if (t < 0.0 || !takes_place(static_cast<float>(t), rays, hits, count, i, arguments->geomID,
+                                    arguments->primID))
             continue;
         RTCRayN_tfar(rays, count, i) = static_cast<float>(t);
         distances[RTCRayN_id(rays, count, i)] = t;

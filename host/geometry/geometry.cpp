@@ -120,16 +120,16 @@ tbb::task_arena& arena_of(int threads) {
     return arenas.try_emplace(threads, slots).first->second;
 }
 
-/// Runs work(begin, end) for pieces of [0, count) on `threads` threads (0: all). Every ray is
-/// traced by itself, so results do not depend on how the batch is cut.
+/// Runs work(begin, end) for pieces of [0, count) on `threads` threads (0: all). The pieces are the
+/// same whatever the threads are.
 template <typename Work>
 void for_each_chunk(std::size_t count, int threads, const Work& work) {
     constexpr std::size_t RAYS_A_TASK = 1024;
     arena_of(threads).execute([&] {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, RAYS_A_TASK),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                              work(range.begin(), range.end());
-                          });
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, count, RAYS_A_TASK),
+            [&](const tbb::blocked_range<std::size_t>& range) { work(range.begin(), range.end()); },
+            tbb::simple_partitioner());
     });
 }
 

@@ -67,6 +67,26 @@ TEST(Batches, HitsDoNotDependOnThreadsBatchSizeOrCoherence) {
     }
 }
 
+/// Embree meets the rays of a packet together, so that which of two surfaces comes first depends on
+/// the packet.
+TEST(Batches, TheEarlierOfSurfacesThatCoincideIsHit) {
+    Scene scene;
+    scene.shapes.push_back(shape_of(RectangleShape{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}));
+    scene.shapes.push_back(shape_of(RectangleShape{{0.3, 0.2, 0}, {3, 0, 0}, {0, 5, 0}}));
+    scene.shapes.push_back(shape_of(DiskShape{{-0.5, 0, 0}, {0, 0, 1}, 2.0}));
+    const Geometry geometry(scene);
+    const auto rays = random_rays(100003, 13);
+    const auto together = trace(geometry, rays, false, 0);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const auto alone = trace(geometry, {rays[i]}, false, 1);
+        ASSERT_TRUE(same_bits(alone, {together[i]})) << "ray " << i;
+        const float x = together[i].position_x, y = together[i].position_y;
+        const bool on_first = std::fabs(x) < 1.99f && std::fabs(y) < 1.99f;
+        ASSERT_TRUE(!on_first || together[i].shape == 0u || together[i].shape == NO_INDEX)
+            << "ray " << i << " at " << x << ' ' << y << " hits " << together[i].shape;
+    }
+}
+
 TEST(Batches, TwoGeometriesOfOneSceneAgree) {
     const Geometry first(scene_with_mesh()), second(scene_with_mesh());
     const auto rays = random_rays(50000, 13);
