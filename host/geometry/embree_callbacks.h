@@ -52,9 +52,9 @@ void bounds_callback(const RTCBoundsFunctionArguments* arguments) {
 }
 
 /// True where a hit at `t` takes the place of the ray's nearest so far: it is nearer, or as near
-/// (in single precision, which Embree compares) and of a shape that comes earlier. Where surfaces
-/// coincide the result then does not hang on the order in which Embree finds them, which depends on
-/// the other rays of a packet.
+/// (in single precision, which Embree compares) and of an earlier geometry of Embree's, or an
+/// earlier primitive of the same one. Where surfaces coincide the result then does not hang on the
+/// order in which Embree finds them, which depends on the other rays of a packet.
 inline bool takes_place(float t, RTCRayN* rays, RTCHitN* hits, unsigned int count, unsigned int i,
                         unsigned int shape, unsigned int primitive) {
     const float nearest = RTCRayN_tfar(rays, count, i);
