@@ -180,7 +180,8 @@ TEST(ErrorInterval, ObserversSeeTheImageSoFarAndTheirTimeDoesNotCount) {
     EXPECT_LT(result.passes.back().seconds, result.total_seconds - 2.0);
 }
 
-/// Passes that double would go to half the error that was asked for.
+/// Passes that double would go to half the error that was asked for on the average. A single stop
+/// may: the error of a sequence falls in steps, by half from 24 to 32 samples.
 TEST(StopAtError, LittleIsRenderedBeyondIt) {
     Scene scene = bare();
     scene.film.width = scene.film.height = 64; // the estimate scatters little

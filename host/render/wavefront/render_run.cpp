@@ -73,7 +73,7 @@ double RenderRun::seconds() const {
     return seconds_before_ + seconds_since(rendering_) - observing_seconds_;
 }
 
-/// An estimate costs as much as half a sample of a simple scene: the many short passes at the
+/// An estimate takes about as long as a sample of a simple scene: the many short passes at the
 /// beginning go without, but where somebody looks or samples or the end depend on it.
 bool RenderRun::wants_estimate(bool observed) const {
     constexpr std::uint32_t short_passes = 64, growth = 4;
@@ -124,10 +124,6 @@ void RenderRun::after_pass(std::uint32_t samples, const RenderObserver& observe,
         observing_seconds_ += seconds_since(start);
     }
     result_.interrupted = goes_on && !goes_on(state_);
-    if (result_.interrupted && estimated_samples_ != samples) {
-        estimate_error();
-        result_.passes.back() = state_;
-    }
     checkpoint_.after_pass(wavefront_, result_);
 }
 
@@ -140,6 +136,8 @@ RenderResult RenderRun::finish() {
 }
 
 RenderResult RenderRun::finish_with_image() {
+    if (estimated_samples_ != state_.samples) // it was interrupted, or resumed at its end
+        estimate_error();
     finish_film(result_, wavefront_, film_resolver(plan_, scene_));
     return finish();
 }

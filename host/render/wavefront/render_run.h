@@ -59,8 +59,8 @@ private:
     Wavefront wavefront_;
     CheckpointFile checkpoint_;
     RenderProgress state_;
-    std::uint32_t estimated_samples_ =
-        2;                      ///< of the last estimate; of the first one 4 times so many
+    /// Of the last estimate; the first one is made of four times as many as this.
+    std::uint32_t estimated_samples_ = 2;
     std::vector<float> errors_; ///< per pixel, if adaptive; empty before the first estimate
     double seconds_before_ = 0.0, observing_seconds_ = 0.0;
 };
