@@ -22,6 +22,7 @@ MaterialRecord material() {
     record.weidlich_wilkie = MODEL_A;
     record.sigma = 0.3f;
     record.lowest_ior = 1.5f;
+    record.spread_value = NO_INDEX;
     return record;
 }
 
@@ -123,7 +124,7 @@ void fill_choice(CheckTables& tables) {
 
 /// Ratios that change along all three axes, the same for both orders of the directions.
 void fill_shape(CheckTables& tables) {
-    constexpr std::size_t cosines = FACET_SHAPE_COSINES, slopes = FACET_SHAPE_SLOPES;
+    constexpr std::size_t cosines = SHAPE_COSINES, slopes = SHAPE_PLACES;
     for (std::size_t i = 0; i < cosines; ++i)
         for (std::size_t o = 0; o < cosines; ++o)
             for (std::size_t s = 0; s < slopes; ++s)

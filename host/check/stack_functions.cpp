@@ -69,6 +69,14 @@ std::vector<CheckedFunction> component_functions() {
                              (Accuracy{5e-6, 1e-2, "places among nodes, by logarithms"}),
                              out[0] = facet_shape_value(tables->shape, REAL(0.2), CHECK_VECTOR(0),
                                                         CHECK_VECTOR(3))),
+            CHECKED_FUNCTION("oren_nayar_separable_albedo", "kernels/scatter/oren_nayar_shape.h",
+                             (Arguments{cosine()}), 1, (Accuracy{5e-6, 1e-2, "places among nodes"}),
+                             out[0] = oren_nayar_separable_albedo(tables->shape, in[0])),
+            CHECKED_FUNCTION(
+                "oren_nayar_spread_value", "kernels/scatter/oren_nayar_shape.h",
+                (Arguments{direction(), direction()}), 1,
+                (Accuracy{5e-6, 1e-2, "places among nodes"}),
+                out[0] = oren_nayar_spread_value(tables->shape, CHECK_VECTOR(0), CHECK_VECTOR(3))),
     };
 }
 

@@ -60,7 +60,7 @@ public:
     /// weidlich-wilkie.
     double internal_reflectance() const { return internal_reflectance(0.0); }
     /// Returns the internal reflectance for an Oren-Nayar substrate of width sigma: light is
-    /// emitted and counted with the weights of its directional albedo
+    /// emitted and counted with the weights of a separable form of it
     /// (host/layers/models/oren_nayar_substrate.h). sigma = 0 gives the value for diffuse emission.
     virtual double internal_reflectance(double sigma) const = 0;
     /// IOR n_k of the medium above the substrate (1 for a bare one).

@@ -40,7 +40,7 @@ typedef struct {
     CameraRecord camera;
     EnvironmentRecord environment; ///< offsets into `image`
     shared_float choice[TABLE_NODES * CHECK_CHOICES];
-    shared_float shape[FACET_SHAPE_SIZE];
+    shared_float shape[SHAPE_TABLE_SIZE];
     shared_float image[5 * CHECK_IMAGE_TEXELS + CHECK_IMAGE_HEIGHT];
     shared_float factors[2 * CHECK_RANK * LANES];
     shared_float dense[LANES * LANES];

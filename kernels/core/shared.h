@@ -188,11 +188,13 @@ typedef struct {
     shared_float lowest_ior; ///< IOR of the medium above the substrate, at the reference wavelength
     shared_uint first_diagonal; ///< oren-nayar: the substrate's own operator, like the others
     shared_uint first_factors, first_dense;
+    shared_uint separable_albedo; ///< oren-nayar, where that is: table of oren_nayar_shape.h
+    shared_uint spread_value;     ///< oren-nayar: likewise; NO_INDEX: no light is spread
     shared_uint walk;  ///< walked through: the first of its layer_count + 1 parts; or NO_INDEX
     shared_uint shift; ///< hero: [phase][emission lane][excitation lane], cumulative probability;
                        ///< NO_INDEX: nothing shifts
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 100);
+ASSERT_SIZE(MaterialRecord, 108);
 
 /// Extinctions that distances in a scattering slab are sampled with (walk.h).
 #define WALK_REFERENCES 4

@@ -5,38 +5,23 @@
 #ifndef RERADIANT_FACET_SHAPE_H
 #define RERADIANT_FACET_SHAPE_H
 
-#include "kernels/core/portable.h"
-#include "kernels/core/shared.h"
+#include "kernels/scatter/shape_table.h"
 
 KERNELS_BEGIN
 
-/// Nodes of a table [cosine][other cosine][slope], symmetric in the cosines. Both cosines are
-/// uniform in their square roots, from FACET_SHAPE_LEAST on; slopes as facet_shape_slope says.
-#define FACET_SHAPE_COSINES 16u
-#define FACET_SHAPE_SLOPES 17u
+/// Cosines are uniform in their square roots, from this one on.
 #define FACET_SHAPE_LEAST REAL(0.1)
-#define FACET_SHAPE_SIZE (FACET_SHAPE_COSINES * FACET_SHAPE_COSINES * FACET_SHAPE_SLOPES)
 
-/// A place between two nodes.
-typedef struct {
-    uint node;
-    real t;
-} FacetShapePlace;
-
-DEVICE_FUNCTION FacetShapePlace facet_shape_place(real position, uint nodes) {
-    const real inside = fmin(fmax(position, REAL(0.0)), (real)(nodes - 1u));
-    FacetShapePlace place;
-    place.node = (uint)inside;
-    place.node = place.node > nodes - 2u ? nodes - 2u : place.node;
-    place.t = inside - (real)place.node;
-    return place;
+DEVICE_FUNCTION real facet_shape_node_cosine(uint node) {
+    return square(FACET_SHAPE_LEAST +
+                  (REAL(1.0) - FACET_SHAPE_LEAST) * ((real)node / (real)(SHAPE_COSINES - 1u)));
 }
 
-DEVICE_FUNCTION FacetShapePlace facet_shape_cosine(real cosine) {
+DEVICE_FUNCTION ShapePlace facet_shape_cosine(real cosine) {
     const real x = sqrt(fmax(cosine, REAL(0.0)));
-    return facet_shape_place((x - FACET_SHAPE_LEAST) * ((real)(FACET_SHAPE_COSINES - 1u) /
-                                                        (REAL(1.0) - FACET_SHAPE_LEAST)),
-                             FACET_SHAPE_COSINES);
+    return shape_place((x - FACET_SHAPE_LEAST) *
+                           ((real)(SHAPE_COSINES - 1u) / (REAL(1.0) - FACET_SHAPE_LEAST)),
+                       SHAPE_COSINES);
 }
 
 /// Place of the half vector of two directions among those that their cosines allow: 0 where their
@@ -62,19 +47,9 @@ DEVICE_FUNCTION real facet_shape_slope(real alpha, Vec3 wi, Vec3 wo) {
 /// directions above the surface; symmetric in them.
 DEVICE_FUNCTION real facet_shape_value(GLOBAL_CONST shared_float* table, real alpha, Vec3 wi,
                                        Vec3 wo) {
-    const FacetShapePlace i = facet_shape_cosine(wi.z), o = facet_shape_cosine(wo.z);
-    const FacetShapePlace s = facet_shape_place(
-        facet_shape_slope(alpha, wi, wo) * (real)(FACET_SHAPE_SLOPES - 1u), FACET_SHAPE_SLOPES);
-    real sum = REAL(0.0);
-    for (uint corner = 0u; corner < 4u; ++corner) {
-        const uint down = corner & 1u, right = corner >> 1u;
-        GLOBAL_CONST shared_float* row =
-            table + ((i.node + down) * FACET_SHAPE_COSINES + o.node + right) * FACET_SHAPE_SLOPES +
-            s.node;
-        sum += (down ? i.t : REAL(1.0) - i.t) * (right ? o.t : REAL(1.0) - o.t) *
-               (row[0] + s.t * (row[1] - row[0]));
-    }
-    return sum;
+    const ShapePlace s =
+        shape_place(facet_shape_slope(alpha, wi, wo) * (real)(SHAPE_PLACES - 1u), SHAPE_PLACES);
+    return shape_value(table, facet_shape_cosine(wi.z), facet_shape_cosine(wo.z), s);
 }
 
 KERNELS_END

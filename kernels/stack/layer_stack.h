@@ -16,6 +16,7 @@
 #include "kernels/scatter/lobe_width.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
+#include "kernels/scatter/oren_nayar_shape.h"
 #include "kernels/stack/model_a.h"
 
 KERNELS_BEGIN
@@ -194,19 +195,30 @@ typedef struct {
 } LayerDiffuse;
 
 #if FEATURE_OREN_NAYAR
-/// Returns the weights of the diffuse part for two directions in air, refracted down to the
-/// substrate (by the IOR at the reference wavelength): where its first bounce stands apart, the
-/// weights `rest` and `first` of host/layers/models/oren_nayar_substrate.h; else pi f / rho.
-DEVICE_FUNCTION LayerDiffuse layer_stack_oren_nayar(MaterialRecord record, Vec3 wi, Vec3 wo) {
-    const Vec3 below_i = fresnel_refracted(wi, record.lowest_ior);
-    const Vec3 below_o = fresnel_refracted(wo, record.lowest_ior);
+/// pi f / rho of the substrate for two directions in air, refracted down to it (by the IOR at the
+/// reference wavelength) or spread on their way.
+DEVICE_FUNCTION real layer_stack_oren_nayar_value(LayerStackView stack, Vec3 wi, Vec3 wo) {
+    const MaterialRecord record = stack.record;
+#if FEATURE_ROUGH || FEATURE_DEEPER_LOBES || FEATURE_SCATTERING_SLABS
+    if (record.spread_value != NO_INDEX)
+        return oren_nayar_spread_value(stack.tables + record.spread_value, wi, wo);
+#endif
+    return PI_REAL * oren_nayar_value(record.sigma, fresnel_refracted(wi, record.lowest_ior),
+                                      fresnel_refracted(wo, record.lowest_ior));
+}
+
+/// Returns the weights of the diffuse part: where its first bounce stands apart, the weights `rest`
+/// and `first` of host/layers/models/oren_nayar_substrate.h; else pi f / rho.
+DEVICE_FUNCTION LayerDiffuse layer_stack_oren_nayar(LayerStackView stack, Vec3 wi, Vec3 wo) {
+    const MaterialRecord record = stack.record;
     LayerDiffuse weights;
     weights.first = REAL(0.0);
-    weights.diffuse = PI_REAL * oren_nayar_value(record.sigma, below_i, below_o);
+    weights.diffuse = layer_stack_oren_nayar_value(stack, wi, wo);
     if (record.first_diagonal != NO_INDEX) {
+        GLOBAL_CONST shared_float* albedo = stack.tables + record.separable_albedo;
         const real mean = oren_nayar_mean_albedo(record.sigma);
         const real product =
-            oren_nayar_albedo(record.sigma, below_i.z) * oren_nayar_albedo(record.sigma, below_o.z);
+            oren_nayar_separable_albedo(albedo, wi.z) * oren_nayar_separable_albedo(albedo, wo.z);
         weights.first = weights.diffuse - product / mean;
         weights.diffuse = product / square(mean);
     }
@@ -222,7 +234,7 @@ DEVICE_FUNCTION LayerDiffuse layer_stack_diffuse(LayerStackView stack, Vec3 wi, 
     factor.first = REAL(0.0);
 #if FEATURE_OREN_NAYAR
     if (stack.record.sigma > 0.0f)
-        factor = layer_stack_oren_nayar(stack.record, wi, wo);
+        factor = layer_stack_oren_nayar(stack, wi, wo);
 #endif
 #if FEATURE_WEIDLICH_WILKIE
     if (stack.record.weidlich_wilkie == MODEL_A) {

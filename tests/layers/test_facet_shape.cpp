@@ -86,7 +86,7 @@ TEST(FacetShape, LittleIsLeftToTheResidual) {
 TEST(FacetShape, IsReciprocalAndNotNegative) {
     const auto table = facet_shape({.eta = 1.5, .alpha = 0.2});
     ASSERT_TRUE(table);
-    ASSERT_EQ(table->size(), FACET_SHAPE_SIZE);
+    ASSERT_EQ(table->size(), SHAPE_TABLE_SIZE);
     for (const float ratio : *table)
         EXPECT_TRUE(ratio >= 0.0f && ratio < 1.0f) << ratio;
     for (const auto& [theta_i, theta_o, phi] : wide) {
@@ -115,7 +115,7 @@ TEST(FacetShape, IsKeptOnDiskAsItWasMade) {
     const RoughInterface interface { .eta = 1.5, .alpha = 0.25 };
     const auto made = facet_shape(interface);
     const InterfaceKey key{InterfaceNumbers::FacetShape, interface, 15000};
-    const auto kept = read_interface_file(key.file(), key, FACET_SHAPE_SIZE);
+    const auto kept = read_interface_file(key.file(), key, SHAPE_TABLE_SIZE);
     ASSERT_TRUE(made && kept);
     EXPECT_EQ(std::vector<float>(kept->begin(), kept->end()), *made);
 }

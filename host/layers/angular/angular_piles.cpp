@@ -106,22 +106,32 @@ AirPile air_pile(const SmoothStack& media, const AngularGrid& grid) {
 }
 
 SubstratePile substrate_pile(const SmoothStack& media, const AngularGrid& grid,
-                             const SubstrateWeight& weight) {
-    SubstratePile pile{Eigen::VectorXd::Zero(grid.cells()), Eigen::VectorXd::Zero(grid.cells()),
-                       Eigen::VectorXd::Zero(grid.cells()), 0.0};
+                             const CosineNodes& nodes) {
+    const Eigen::Index cells = grid.cells(), weights = nodes.size();
+    SubstratePile pile{Eigen::MatrixXd::Zero(cells, weights), Eigen::VectorXd::Zero(cells),
+                       Eigen::MatrixXd::Zero(cells, weights),
+                       Eigen::MatrixXd::Zero(weights, weights)};
     const Eigen::VectorXd e = grid.etendue();
     const double own = media.ior.back() * media.ior.back();
     const double limit = std::max(own, grid.ior * grid.ior);
     integrate_invariant(all_edges(media, grid.invariants(), {}, limit), [&](double q, double w) {
         const int cell = cell_at(grid, q);
         const SmoothResponse response = response_at(media, q);
-        const double share = q < own ? weight(std::sqrt(1.0 - q / own)) : 0.0;
-        if (cell >= 0) {
-            pile.through(cell) += w * share * response.transmission / e(cell);
+        if (cell >= 0)
             pile.back(cell) += w * response.reflection_down / e(cell);
-            pile.emitted(cell) += w * share * response.transmission / own;
-        }
-        pile.emitted_back += w * share * share * response.reflection_up() / own;
+        if (!(q < own))
+            return;
+        const CosineShare share = nodes.at(std::sqrt(1.0 - q / own));
+        share.for_nodes([&](Eigen::Index node, double own_share) {
+            if (cell >= 0) {
+                pile.through(cell, node) += w * own_share * response.transmission / e(cell);
+                pile.emitted(cell, node) += w * own_share * response.transmission / own;
+            }
+            share.for_nodes([&](Eigen::Index other, double other_share) {
+                pile.emitted_back(node, other) +=
+                    w * own_share * other_share * response.reflection_up() / own;
+            });
+        });
     });
     return pile;
 }

@@ -2,10 +2,9 @@
 
 #include "host/layers/angular/angular_grid.h"
 #include "host/layers/smooth/smooth_stack.h"
+#include "host/layers/stack/cosine_nodes.h"
 
 #include <Eigen/Core>
-
-#include <functional>
 
 namespace reradiant {
 
@@ -28,18 +27,17 @@ struct AirPile {
 };
 AirPile air_pile(const SmoothStack& media, const AngularGrid& grid);
 
-/// A function of the cosine in the lowest medium by which the substrate weighs light that arrives
-/// and by which it sends it out.
-using SubstrateWeight = std::function<double(double cosine)>;
-
-/// A `SubstratePile` is the pile between the lowest grid and the substrate.
+/// A `SubstratePile` is the pile between the lowest grid and the substrate, for `weights` functions
+/// of the cosine in the lowest medium by which the substrate weighs light that arrives and by which
+/// it sends it out diffusely.
 struct SubstratePile {
-    Eigen::VectorXd through;   ///< share of a cell's flux that gets there, weighted
-    Eigen::VectorXd back;      ///< share that comes back
-    Eigen::VectorXd emitted;   ///< share of the substrate's (weighted) emission that gets to a cell
-    double emitted_back = 0.0; ///< share of it that comes back at once, weighted twice
+    Eigen::MatrixXd through;      ///< (cells, weights): share of a cell's flux there, weighted
+    Eigen::VectorXd back;         ///< share that comes back
+    Eigen::MatrixXd emitted;      ///< (cells, weights): share of the emission that gets to a cell
+    Eigen::MatrixXd emitted_back; ///< (weights sent, weights received): what comes back at once
 };
+/// The weights are those of `CosineNodes`.
 SubstratePile substrate_pile(const SmoothStack& media, const AngularGrid& grid,
-                             const SubstrateWeight& weight);
+                             const CosineNodes& nodes);
 
 } // namespace reradiant

@@ -98,52 +98,68 @@ Eigen::MatrixXd AngularSystem::coupling(const SubstratePile& substrate) const {
     return k;
 }
 
-namespace {
-
-AngularShares shares_of(const Eigen::MatrixXd& values) {
-    return {values.col(0), values.col(1), values.col(2)};
-}
-
-} // namespace
-
-AngularResponse AngularSystem::solve(const SubstrateWeight& weight) const {
-    const SubstratePile substrate = substrate_pile(bottom_media_, scatterers_.back().lower, weight);
+Eigen::MatrixXd AngularSystem::values_of(const Eigen::MatrixXd& outgoing,
+                                         const Eigen::MatrixXd& links) const {
     const Eigen::Index n = size();
-    const Eigen::Index first_upper = scatterers_.front().upper.cells();
-    const Eigen::Index last_lower = scatterers_.back().lower.cells();
-    // values of outgoing flux: columns substrate, air; then values of incoming flux by the
-    // scatterers' responses, with the share lost there as a third column
-    Eigen::MatrixXd outgoing = Eigen::MatrixXd::Zero(n, 3);
-    outgoing.col(0).tail(last_lower) = substrate.through;
-    outgoing.col(1).head(first_upper) = air_.through;
-    Eigen::MatrixXd incoming = Eigen::MatrixXd::Zero(n, 3);
+    Eigen::MatrixXd incoming = Eigen::MatrixXd::Zero(n, 1 + outgoing.cols());
     Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n, n);
-    const Eigen::MatrixXd links = coupling(substrate);
     Eigen::Index at = 0;
     for (const Scatterer& scatterer : scatterers_) {
         const Eigen::Index m = scatterer.response.rows();
         const Eigen::MatrixXd adjoint = scatterer.response.transpose();
-        incoming.middleRows(at, m) = adjoint * outgoing.middleRows(at, m);
+        incoming.block(at, 1, m, outgoing.cols()) = adjoint * outgoing.middleRows(at, m);
         if (scatterer.loses) {
-            incoming.col(2).segment(at, m) =
+            incoming.col(0).segment(at, m) =
                 (1.0 - scatterer.response.colwise().sum().transpose().array()).max(0.0);
         }
         system.middleRows(at, m) -= adjoint * links.middleRows(at, m);
         at += m;
     }
     const bool coupled = (links.array() != 0.0).any();
-    const Eigen::MatrixXd values = coupled ? left_quotient(system, incoming) : incoming;
+    return coupled ? left_quotient(system, incoming) : incoming;
+}
+
+namespace {
+
+AngularShares shares_of(const Eigen::MatrixXd& values) {
+    return {values.col(1), values.col(2), values.col(0)};
+}
+
+} // namespace
+
+AngularResponse AngularSystem::solve() const {
+    const SubstratePile substrate =
+        substrate_pile(bottom_media_, scatterers_.back().lower, CosineNodes(1));
+    const Eigen::Index first_upper = scatterers_.front().upper.cells();
+    const Eigen::Index last_lower = scatterers_.back().lower.cells();
+    // values of outgoing flux: columns substrate, air
+    Eigen::MatrixXd outgoing = Eigen::MatrixXd::Zero(size(), 2);
+    outgoing.col(0).tail(last_lower) = substrate.through.col(0);
+    outgoing.col(1).head(first_upper) = air_.through;
+    const Eigen::MatrixXd links = coupling(substrate);
+    const Eigen::MatrixXd values = values_of(outgoing, links);
     AngularResponse response;
     response.incoming = shares_of(values.topRows(first_upper));
     if (scatterers_.front().depth > 0.0) {
         const Eigen::Index below = scatterers_.front().lower.cells();
-        response.passed = shares_of(outgoing.middleRows(first_upper, below) +
-                                    links.middleRows(first_upper, below) * values);
+        Eigen::MatrixXd passed = links.middleRows(first_upper, below) * values;
+        passed.rightCols(2) += outgoing.middleRows(first_upper, below);
+        response.passed = shares_of(passed);
     }
     response.internal_reflectance =
-        substrate.emitted_back + substrate.emitted.dot(values.col(0).tail(last_lower));
-    response.escape = substrate.emitted.dot(values.col(1).tail(last_lower));
+        substrate.emitted_back(0, 0) + substrate.emitted.col(0).dot(values.col(1).tail(last_lower));
+    response.escape = substrate.emitted.col(0).dot(values.col(2).tail(last_lower));
     return response;
+}
+
+Eigen::MatrixXd AngularSystem::returned(const CosineNodes& nodes) const {
+    const SubstratePile substrate = substrate_pile(bottom_media_, scatterers_.back().lower, nodes);
+    const Eigen::Index last_lower = scatterers_.back().lower.cells();
+    Eigen::MatrixXd outgoing = Eigen::MatrixXd::Zero(size(), nodes.size());
+    outgoing.bottomRows(last_lower) = substrate.through;
+    const Eigen::MatrixXd values = values_of(outgoing, coupling(substrate));
+    return substrate.emitted_back +
+           substrate.emitted.transpose() * values.bottomRows(last_lower).rightCols(nodes.size());
 }
 
 } // namespace reradiant

@@ -36,10 +36,11 @@ public:
     /// Sets up the elements above a substrate, some of which must scatter.
     explicit AngularSystem(std::span<const StackElement> stack);
 
-    /// Solves for all interreflections. `weight` is the factor with which the substrate weighs both
-    /// what it sends out and what it receives; with 1, light is emitted diffusely and all of it
-    /// counts.
-    AngularResponse solve(const SubstrateWeight& weight = [](double) { return 1.0; }) const;
+    /// Solves for all interreflections. The substrate emits diffusely.
+    AngularResponse solve() const;
+    /// Returns what comes back of what the substrate emits, (nodes, nodes): the share of diffuse
+    /// emission weighted by one node's function of the cosine, weighted by another's on its return.
+    Eigen::MatrixXd returned(const CosineNodes& nodes) const;
     /// Media and slabs from the air to the medium above the first scatterer.
     const SmoothStack& top() const { return top_media_; }
     const AngularGrid& top_grid() const { return scatterers_.front().upper; }
@@ -66,6 +67,9 @@ private:
     void add_slab(const SlabValues& slab);
     /// Values of outgoing flux as a linear function of the values of incoming flux.
     Eigen::MatrixXd coupling(const SubstratePile& substrate) const;
+    /// Values of incoming flux, one column for each of `outgoing` and, in front of them, the share
+    /// that is lost at scatterers.
+    Eigen::MatrixXd values_of(const Eigen::MatrixXd& outgoing, const Eigen::MatrixXd& links) const;
     Eigen::Index size() const;
 
     std::vector<Scatterer> scatterers_;

@@ -85,15 +85,9 @@ public:
             ++first_rough_;
         lobe_top_ = smooth_pile(1.0, std::span(unscattered_).first(first_rough_));
         const AngularResponse response = system_.solve();
-        const auto fitted = [&](Eigen::VectorXd AngularShares::*share) {
-            return system_.top_depth() > 0.0
-                       ? ShareFit(fit_, system_.top_grid(), system_.top_depth(),
-                                  response.incoming.*share, response.passed.*share)
-                       : ShareFit(fit_, response.incoming.*share);
-        };
-        substrate_ = fitted(&AngularShares::to_substrate);
-        air_ = fitted(&AngularShares::to_air);
-        lost_ = fitted(&AngularShares::lost);
+        substrate_ = fitted(response, &AngularShares::to_substrate);
+        air_ = fitted(response, &AngularShares::to_air);
+        lost_ = fitted(response, &AngularShares::lost);
         air_cells_ = response.incoming.to_air;
         internal_reflectance_ = std::clamp(response.internal_reflectance, 0.0, 1.0);
         make_reciprocal(response.escape);
@@ -103,11 +97,6 @@ public:
     }
 
     double transmission(double c) const override { return shares(c).transmission; }
-    double internal_reflectance(double sigma) const override {
-        return oren_nayar_feedback(sigma, internal_reflectance_, [&](const SubstrateWeight& w) {
-            return system_.solve(w).internal_reflectance;
-        });
-    }
     double specular_albedo(double c) const override { return shares(c).specular; }
     double specular_delta(double c) const override {
         return smooth_response(lobe_top_, 1.0, std::clamp(c, 0.0, 1.0)).reflection_down;
@@ -138,6 +127,15 @@ public:
     }
     double lost(double c) const override { return shares(c).lost; }
 
+protected:
+    double diffuse_reflectance() const override { return internal_reflectance_; }
+    Eigen::MatrixXd returned_to_substrate(const CosineNodes& nodes) const override {
+        return system_.returned(nodes);
+    }
+    std::shared_ptr<const SubstrateArrivals> arrivals() const override {
+        return SubstrateArrivals::of(stack_);
+    }
+
 private:
     struct Shares {
         double transmission, specular, lost;
@@ -160,6 +158,13 @@ private:
         const double lost = std::max(lost_(inside), 0.0);
         return {in.transmission * to_substrate, in.reflection_down + in.transmission * to_air,
                 in.transmission * lost};
+    }
+
+    ShareFit fitted(const AngularResponse& response, Eigen::VectorXd AngularShares::*share) const {
+        return system_.top_depth() > 0.0
+                   ? ShareFit(fit_, system_.top_grid(), system_.top_depth(),
+                              response.incoming.*share, response.passed.*share)
+                   : ShareFit(fit_, response.incoming.*share);
     }
 
     static double inner_cosine(const SmoothStack& media, double c) {
@@ -338,7 +343,7 @@ private:
 
 } // namespace
 
-std::shared_ptr<const StackBsdf> angular_transport(std::span<const StackElement> stack) {
+std::shared_ptr<const AddingModel> angular_transport(std::span<const StackElement> stack) {
     return std::make_shared<AngularTransport>(stack);
 }
 

@@ -38,6 +38,11 @@ public:
     virtual double way_in(const kernels::Vec3& wi, const kernels::Vec3& wo) const = 0;
     virtual OrenNayarWeights way_out(double sigma, const kernels::Vec3& wi,
                                      const kernels::Vec3& wo) const = 0;
+    /// Returns the tables of an Oren-Nayar substrate of width sigma > 0 beneath the stack; nothing
+    /// for a model that does not follow light back to it.
+    virtual std::shared_ptr<const OrenNayarTables> oren_nayar_tables(double /*sigma*/) const {
+        return nullptr;
+    }
     /// Returns the integrals of way_out times the cosine over outgoing directions, for a model
     /// whose way in does not depend on these; nothing for one whose two ways do not come apart.
     virtual std::optional<OrenNayarWeights> whole_way_out(double /*sigma*/,

@@ -24,16 +24,12 @@ using kernels::Vec3;
 
 namespace {
 
-constexpr std::size_t cosines = FACET_SHAPE_COSINES, slopes = FACET_SHAPE_SLOPES;
+constexpr std::size_t cosines = SHAPE_COSINES, slopes = SHAPE_PLACES;
 /// Generator as in L'Ecuyer and Lemieux 2000, table 1.
 constexpr LatticeRule walk_rule{8191, 5130};
 
 double node_cosine(std::size_t node) {
-    using kernels::real;
-    const double least = FACET_SHAPE_LEAST;
-    const double x =
-        least + (1.0 - least) * static_cast<double>(node) / static_cast<double>(cosines - 1);
-    return x * x;
+    return kernels::facet_shape_node_cosine(static_cast<kernels::uint>(node));
 }
 
 double sine(double cosine) {
@@ -201,7 +197,7 @@ void smooth_slopes(std::span<double> row) {
 }
 
 std::vector<double> compute_shape(const RoughInterface& interface) {
-    std::vector<double> table(FACET_SHAPE_SIZE);
+    std::vector<double> table(SHAPE_TABLE_SIZE);
     // isolated: a caller's own parallel loop must not be entered here, while the store is locked
     tbb::this_task_arena::isolate([&] {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cosines, 1), [&](const auto& range) {
@@ -234,7 +230,7 @@ std::shared_ptr<const std::vector<float>> kept_shape(const RoughInterface& inter
     const InterfaceKey key{InterfaceNumbers::FacetShape, interface,
                            std::lround(interface.eta * 1e4)};
     std::optional<std::vector<double>> table =
-        read_interface_file(key.file(), key, FACET_SHAPE_SIZE);
+        read_interface_file(key.file(), key, SHAPE_TABLE_SIZE);
     if (!table) {
         table = compute_shape(interface);
         keep_interface_numbers(key, *table);

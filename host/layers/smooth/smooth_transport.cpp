@@ -17,18 +17,12 @@ class SmoothTransport final : public AddingModel {
 public:
     explicit SmoothTransport(std::span<const StackElement> stack)
         : AddingModel(stack), stack_(smooth_pile(1.0, stack)) {
-        internal_reflectance_ =
-            1.0 - integrate_over_lowest([](double loss_up, double) { return loss_up; });
-        internal_reflectance_ = std::clamp(internal_reflectance_, 0.0, 1.0);
+        const double lost = integrate_pieces(breaks_in_lowest(), integration_nodes,
+                                             [this](double c) { return 2.0 * c * loss_up(c); });
+        internal_reflectance_ = std::clamp(1.0 - lost, 0.0, 1.0);
     }
 
     double transmission(double c) const override { return response(c).transmission; }
-    double internal_reflectance(double sigma) const override {
-        return oren_nayar_feedback(sigma, internal_reflectance_, [&](const SubstrateWeight& w) {
-            return integrate_over_lowest(
-                [&](double loss_up, double c) { return square(w(c)) * (1.0 - loss_up); });
-        });
-    }
     double specular_albedo(double c) const override { return response(c).reflection_down; }
     double specular_delta(double c) const override { return response(c).reflection_down; }
     bool has_top_lobe() const override { return false; }
@@ -39,24 +33,50 @@ public:
     double residual_average() const override { return 0.0; }
     double lost(double) const override { return 0.0; }
 
+protected:
+    double diffuse_reflectance() const override { return internal_reflectance_; }
+    Eigen::MatrixXd returned_to_substrate(const CosineNodes& nodes) const override {
+        Eigen::MatrixXd returned = Eigen::MatrixXd::Zero(nodes.size(), nodes.size());
+        for (Eigen::Index node = 0; node + 1 < nodes.size(); ++node)
+            add_returned(nodes, node, returned);
+        return returned;
+    }
+
 private:
     SmoothResponse response(double c) const {
         return smooth_response(stack_, 1.0, std::clamp(c, 0.0, 1.0));
     }
 
-    static double square(double x) { return x * x; }
+    /// Adds what comes back between two nodes.
+    void add_returned(const CosineNodes& nodes, Eigen::Index node,
+                      Eigen::MatrixXd& returned) const {
+        const double low = nodes.cosine(node), high = nodes.cosine(node + 1);
+        std::vector<double> breaks{low, high};
+        for (const double c : breaks_in_lowest())
+            if (c > low && c < high)
+                breaks.push_back(c);
+        std::sort(breaks.begin(), breaks.end());
+        Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+        for (int i = 0; i < 2; ++i)
+            for (int o = 0; o < 2; ++o)
+                sum(i, o) = integrate_pieces(breaks, 16, [&](double c) {
+                    const double t = (c - low) / (high - low);
+                    return 2.0 * c * (1.0 - loss_up(c)) * (i == 0 ? 1.0 - t : t) *
+                           (o == 0 ? 1.0 - t : t);
+                });
+        returned.block<2, 2>(node, node) += sum;
+    }
 
-    /// 2 integral of a function of (1 - R_up, c) c dc over the lowest medium, split at every
-    /// critical cosine and at the scale where a denser medium above changes the path.
-    template <typename Function>
-    double integrate_over_lowest(const Function& function) const {
+    double loss_up(double c) const { return smooth_response(stack_, stack_.ior.back(), c).loss_up; }
+
+    /// Pieces of the cosine in the lowest medium: every critical cosine, and the scale where a
+    /// denser medium above changes the path.
+    std::vector<double> breaks_in_lowest() const {
         const double n = stack_.ior.back();
         std::vector<double> inner;
         for (const double above : stack_.ior)
             inner.push_back(std::sqrt(std::fabs((n - above) * (n + above))) / n);
-        return integrate_pieces(breaks_between_0_and_1(inner), integration_nodes, [&](double c) {
-            return 2.0 * c * function(smooth_response(stack_, n, c).loss_up, c);
-        });
+        return breaks_between_0_and_1(inner);
     }
 
     SmoothStack stack_;
@@ -66,7 +86,7 @@ private:
 
 } // namespace
 
-std::shared_ptr<const StackBsdf> smooth_transport(std::span<const StackElement> stack) {
+std::shared_ptr<const AddingModel> smooth_transport(std::span<const StackElement> stack) {
     return std::make_shared<SmoothTransport>(stack);
 }
 

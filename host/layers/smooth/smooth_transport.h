@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/layers/models/stack_bsdf.h"
+#include "host/layers/models/adding.h"
 
 #include <memory>
 #include <span>
@@ -9,6 +9,6 @@ namespace reradiant {
 
 /// Adding in a stack in which nothing scatters (possibly without any interface), in closed form at
 /// every direction.
-std::shared_ptr<const StackBsdf> smooth_transport(std::span<const StackElement> stack);
+std::shared_ptr<const AddingModel> smooth_transport(std::span<const StackElement> stack);
 
 } // namespace reradiant

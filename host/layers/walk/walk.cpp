@@ -136,14 +136,14 @@ public:
           d_(kernels::vec3(-wi.x, -wi.y, -wi.z)) {}
 
     void run() {
-        while (going_ && at_ >= 0) {
-            step();
-            if (going_ && at_ >= 0) {
-                const double factor = roulette(carried_.largest(), random_);
-                carried_.scale(factor);
-                going_ = factor > 0.0;
-            }
-        }
+        while (going_ && at_ >= 0)
+            advance();
+    }
+    /// Goes on until the light meets a diffuse substrate; false where it does not.
+    bool run_to_substrate() {
+        while (going_ && at_ >= 0 && element().kind != Kind::Diffuse)
+            advance();
+        return going_ && at_ >= 0;
     }
     bool has_left() const { return going_; }
     bool is_delta() const { return is_delta_; }
@@ -151,6 +151,14 @@ public:
     const WalkThroughput& carried() const { return carried_; }
 
 private:
+    void advance() {
+        step();
+        if (going_ && at_ >= 0) {
+            const double factor = roulette(carried_.largest(), random_);
+            carried_.scale(factor);
+            going_ = factor > 0.0;
+        }
+    }
     const WalkElement& element() const {
         return carried_.elements()[static_cast<std::size_t>(at_)];
     }
@@ -359,6 +367,14 @@ WalkSample LayerWalk::sample(const Vec3& wi, int band, WalkRandom& random) const
     return {walk.direction(), walk.carried().band(),
             walk.has_left() ? walk.carried().rows()(0) : 0.0, walk.carried().reached(),
             walk.is_delta()};
+}
+
+WalkArrival LayerWalk::arrival(const Vec3& wi, WalkRandom& random) const {
+    check_direction(wi);
+    Walk walk(WalkThroughput(material_, 0), wi, random, nullptr, nullptr);
+    if (!walk.run_to_substrate())
+        return {};
+    return {arriving(walk.direction()), walk.carried().rows()(0)};
 }
 
 LayerWalk LayerWalk::reversed() const {

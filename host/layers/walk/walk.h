@@ -38,6 +38,12 @@ struct WalkSample {
     bool is_delta = false; ///< smooth surfaces alone sent it there
 };
 
+/// A `WalkArrival` is light where it meets the substrate for the first time.
+struct WalkArrival {
+    kernels::Vec3 from{}; ///< away from the substrate, towards where it comes from
+    double weight = 0.0;  ///< share of the light that it carries; 0: it left, or was absorbed
+};
+
 /// Model C: position-free random walk through a stack over a substrate (after Guo, Hasan and Zhao
 /// 2018), unbiased, in double precision, with the wavelength shift inside the walk.
 ///
@@ -56,6 +62,8 @@ public:
     /// Makes one band for each wavelength. Throws an input Error for numbers out of range.
     LayerWalk(const LayerStack& stack, const SubstrateValues& substrate,
               const std::vector<double>& wavelengths_nm);
+    /// Makes a single band over a diffuse substrate. Throws as above.
+    explicit LayerWalk(const StackElements& stack) : LayerWalk(WalkMaterial(stack)) {}
 
     int bands() const { return material_.bands(); }
     bool serves_all_bands() const { return material_.serves_all_bands(); }
@@ -70,6 +78,10 @@ public:
     /// directions is the integral of eval times their cosine. Walks backwards, from a camera,
     /// are those of `reversed`.
     WalkSample sample(const kernels::Vec3& wi, int band, WalkRandom& random) const;
+
+    /// Follows light that comes from wi in the first band to the substrate. The mean weight is the
+    /// transmission of the stack without what the substrate sends back.
+    WalkArrival arrival(const kernels::Vec3& wi, WalkRandom& random) const;
 
     /// Returns the material with light running backwards: eval(wi, wo)(lo, li) of one is eval(wo,
     /// wi)(li, lo) of the other. Under dispersion the reversal brings in n^2 of the lowest slab at

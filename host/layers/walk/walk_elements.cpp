@@ -99,6 +99,10 @@ WalkMaterial::WalkMaterial(const LayerStack& stack, const SubstrateValues& subst
     }
 }
 
+WalkMaterial::WalkMaterial(const StackElements& stack)
+    : shared_(walk_elements(stack_over(stack, DiffuseValues{}))), by_band_{shared_},
+      matrix_(Eigen::MatrixXd::Ones(1, 1)) {}
+
 WalkMaterial WalkMaterial::reversed() const {
     WalkMaterial result = *this;
     for (int to = 0; to < bands(); ++to) {

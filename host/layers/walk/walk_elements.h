@@ -29,6 +29,8 @@ class WalkMaterial {
 public:
     WalkMaterial(const LayerStack& stack, const SubstrateValues& substrate,
                  const std::vector<double>& wavelengths_nm);
+    /// One band, over a diffuse substrate that sends all light back.
+    explicit WalkMaterial(const StackElements& stack);
 
     int bands() const { return static_cast<int>(by_band_.size()); }
     /// True when all bands go the same ways: they differ in absorption and re-radiation alone.

@@ -6,7 +6,7 @@
 #include "host/render/tables/substrate_operator.h"
 #include "host/scene/model/closed_model.h"
 #include "kernels/core/shared.h"
-#include "kernels/scatter/facet_shape.h"
+#include "kernels/scatter/shape_table.h"
 #include "reradiant/error.h"
 
 #include <fmt/core.h>
@@ -161,7 +161,7 @@ private:
         plan_.counts.lobes = static_cast<std::uint64_t>(plan_.features.lobes);
         plan_.features.deeper_lobes = plan_.counts.lobes > 0;
         if (plan_.choice.model == Model::Adding && has_facet_lobe(material_.stack))
-            plan_.counts.floats += FACET_SHAPE_SIZE;
+            plan_.counts.floats += SHAPE_TABLE_SIZE;
         if (plan_.choice.model == Model::WeidlichWilkie)
             for (const DeeperLobe& lobe : weidlich_wilkie_lobes(stack_))
                 if (std::holds_alternative<SlabValues>(stack_[lobe.element]))
@@ -224,6 +224,11 @@ private:
         if (!is_conductor())
             on_cells = substrate_on_cells(material_.substrate, wavelengths_.comb);
         plan_.on_cells = std::make_shared<SubstrateOnCells>(on_cells);
+        // the first bounce stands apart where light comes back to the substrate
+        const bool has_first =
+            sigma() > 0.0 && plan_.choice.model == Model::Adding && !material_.stack.layers.empty();
+        if (has_first)
+            plan_.counts.floats += SHAPE_COSINES + (spreads_in_the_middle() ? SHAPE_TABLE_SIZE : 0);
         if (plan_.features.reflectance_image) {
             plan_.counts.floats += 5 * row_; // scale, r of the stack, a spectrum for each colour
             return;
@@ -233,12 +238,19 @@ private:
         plan_.features.dense_matrix = fluoresces && !on_cells.is_factored();
         const std::uint64_t dense = plan_.features.dense_matrix ? lanes_ : 0;
         const auto factors = 2 * static_cast<std::uint64_t>(on_cells.emission.cols());
-        // the first bounce stands apart where light comes back to the substrate
-        const bool has_first =
-            sigma() > 0.0 && plan_.choice.model == Model::Adding && !material_.stack.layers.empty();
         plan_.counts.floats += (has_first ? 2 : 1) * (1 + factors + dense) * row_;
         if (fluoresces && wavelengths_.hero > 0)
             plan_.counts.floats += lanes_ * row_; // probabilities of each shift
+    }
+
+    /// True where light is spread on its way to the substrate at the middle of the spectrum, for
+    /// which the kernels have an Oren-Nayar substrate's shape.
+    bool spreads_in_the_middle() const {
+        const StackElements stack = material_at(
+            material_, wavelengths_.wavelength_nm(static_cast<int>(wavelengths_.lanes.size()) / 2,
+                                                  wavelengths_.phases / 2));
+        const auto above = above_substrate(stack);
+        return std::any_of(above.begin(), above.end(), scatters);
     }
 
     const Material& material_;

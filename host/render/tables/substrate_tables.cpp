@@ -28,6 +28,7 @@ public:
         record_.diagonal = record_.factors = record_.dense = NO_INDEX;
         record_.first_diagonal = record_.first_factors = record_.first_dense = NO_INDEX;
         record_.reflectance_image = record_.image_reflectance = NO_INDEX;
+        record_.separable_albedo = record_.spread_value = NO_INDEX;
         record_.rank = 0;
         if (substrate_.type == SubstrateType::Conductor) {
             record_.diagonal = lanes_.append_lanes([](int, int) { return 0.0; });
@@ -36,6 +37,7 @@ public:
             return black;
         }
         set_feedback();
+        append_shape();
         if (substrate_.reflectance_image >= 0) {
             append_image();
             return operator_at(middle, mean_albedo_, true);
@@ -61,6 +63,17 @@ private:
             const int lane = i % lanes_.lanes(), phase = i / lanes_.lanes();
             feedback_(lane, phase) = optics_.at(phase, lane).internal_reflectance(sigma_);
         });
+    }
+
+    /// The kernels have a single shape of the substrate, that of the middle of the spectrum.
+    void append_shape() {
+        if (!has_first_)
+            return;
+        const auto tables =
+            optics_.at(lanes_.phases() / 2, lanes_.lanes() / 2).oren_nayar_tables(sigma_);
+        record_.separable_albedo = lanes_.append_numbers(tables->albedo);
+        if (!tables->spread.empty())
+            record_.spread_value = lanes_.append_numbers(tables->spread);
     }
 
     /// Returns the substrate's operator at a phase, with or without what the stack sends back to
