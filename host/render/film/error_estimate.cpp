@@ -190,35 +190,62 @@ RelmseEstimate estimate_from(const std::vector<ErrorSums>& parts) {
     return estimate;
 }
 
-} // namespace
-
-RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int width, int bands,
-                                std::vector<float>* pixel_errors) {
+bool is_known(FilmSums film) {
     for (const FilmStrip& strip : film)
         for (std::size_t pixel = 0; pixel < strip.pixels(); ++pixel)
             if (strip.samples(pixel) < 2)
-                return {};
+                return false;
+    return true;
+}
+
+std::size_t parts_of(FilmSums film, std::size_t columns) {
+    return (pixels_of(film) / columns + rows_together - 1) / rows_together;
+}
+
+/// Calls visit(part, x, y, error) for the pixels that `counts` says, in order within each part.
+template <typename Counts, typename Visit>
+void for_each_error(FilmSums film, const FilmLayout& layout, int width, int bands,
+                    const Counts& counts, const Visit& visit) {
     const double mean = mean_radiance(film, layout, bands);
     const double floor = 0.01 * mean * mean;
     const auto columns = static_cast<std::size_t>(width);
     const std::size_t rows = pixels_of(film) / columns;
-    std::vector<ErrorSums> parts((rows + rows_together - 1) / rows_together);
-    if (pixel_errors)
-        pixel_errors->resize(pixels_of(film));
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    tbb::parallel_for(std::size_t{0}, parts_of(film, columns), [&](std::size_t part) {
         const std::size_t first = part * rows_together, end = std::min(rows, first + rows_together);
         PixelRows pixels(film, layout, width, bands);
         pixels.read(first, end);
         for (std::size_t y = first; y < end; ++y)
-            for (std::size_t x = 0; x < columns; ++x) {
-                const PixelError error = pixels.error(x, y, floor);
-                if (!pixel_errors || !decides_where_samples_go(x, y))
-                    parts[part].add(error);
-                if (pixel_errors)
-                    (*pixel_errors)[y * columns + x] = static_cast<float>(error.value);
-            }
+            for (std::size_t x = 0; x < columns; ++x)
+                if (counts(x, y))
+                    visit(part, x, y, pixels.error(x, y, floor));
     });
+}
+
+} // namespace
+
+RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int width, int bands,
+                                bool adaptive) {
+    if (!is_known(film))
+        return {};
+    std::vector<ErrorSums> parts(parts_of(film, static_cast<std::size_t>(width)));
+    for_each_error(
+        film, layout, width, bands,
+        [&](std::size_t x, std::size_t y) { return !adaptive || !decides_where_samples_go(x, y); },
+        [&](std::size_t part, std::size_t, std::size_t, PixelError error) {
+            parts[part].add(error);
+        });
     return estimate_from(parts);
+}
+
+std::vector<float> deciding_errors(FilmSums film, const FilmLayout& layout, int width, int bands) {
+    std::vector<float> errors(pixels_of(film), 0.0f);
+    if (is_known(film))
+        for_each_error(film, layout, width, bands, decides_where_samples_go,
+                       [&](std::size_t, std::size_t x, std::size_t y, PixelError error) {
+                           errors[y * static_cast<std::size_t>(width) + x] =
+                               static_cast<float>(error.value);
+                       });
+    return errors;
 }
 
 } // namespace reradiant

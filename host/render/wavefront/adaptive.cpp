@@ -122,7 +122,9 @@ std::uint64_t samples_of(FilmSums film) {
 }
 
 std::uint32_t samples_before_adapting(const WavelengthPlan& plan) {
-    return std::clamp(2u * static_cast<std::uint32_t>(plan.phases), 16u, 64u);
+    constexpr std::uint32_t of_comb = 4;
+    return plan.hero == 0 ? of_comb
+                          : std::clamp(2u * static_cast<std::uint32_t>(plan.phases), 16u, 64u);
 }
 
 std::vector<AdaptiveGroup> adaptive_groups(FilmSums film, std::span<const float> pixel_errors,

@@ -17,8 +17,8 @@ struct AdaptiveGroup {
 /// Samples that were taken of all pixels together.
 std::uint64_t samples_of(FilmSums film);
 
-/// Samples that every pixel has before their errors say where the next ones go: both halves of the
-/// film have seen every phase of the comb by then, within reason.
+/// Samples that every pixel has before their errors say where the next ones go. A comb's phases are
+/// so much alike that two of each half will do; hero wavelengths have to have been everywhere.
 std::uint32_t samples_before_adapting(const WavelengthPlan& plan);
 
 /// Returns where samples lower the relMSE most. Tiles of 8 x 8 pixels double their samples, so that
@@ -28,7 +28,7 @@ std::uint32_t samples_before_adapting(const WavelengthPlan& plan);
 /// since few samples may have missed what is bright and rare. Where nothing fits the budget, the
 /// first tile that fits `most` is taken.
 ///
-/// `pixel_errors`: what each pixel adds to the estimate (estimated_relmse). Samples are numbered
+/// `pixel_errors`: those of deciding_errors. Samples are numbered
 /// from `first_sample` on. The same film gives the same groups.
 std::vector<AdaptiveGroup> adaptive_groups(FilmSums film, std::span<const float> pixel_errors,
                                            int width, int height, std::uint32_t first_sample,

@@ -50,7 +50,7 @@ std::vector<AdaptiveGroup> adaptive_pass(RenderRun& rendering, const Scene& scen
                                          const RenderOptions& options) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(scene.film.width) *
                                  static_cast<std::uint64_t>(scene.film.height);
-    const std::span<const float> errors = rendering.pixel_errors();
+    const std::vector<float> errors = rendering.pixel_errors();
     std::vector<AdaptiveGroup> groups;
     rendering.wavefront().film().read([&](FilmSums film) {
         const std::uint64_t left = pixels * options.samples - samples_of(film);

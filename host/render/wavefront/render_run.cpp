@@ -77,27 +77,27 @@ double RenderRun::seconds() const {
 /// beginning go without, but where somebody looks or samples or the end depend on it.
 bool RenderRun::wants_estimate(bool observed) const {
     constexpr std::uint32_t short_passes = 64, growth = 4;
-    return observed || options_.adaptive || options_.relmse > 0.0 ||
-           state_.samples >= short_passes || state_.samples >= growth * estimated_samples_ ||
-           must_stop();
+    return observed || options_.relmse > 0.0 || state_.samples >= short_passes ||
+           state_.samples >= growth * estimated_samples_ || must_stop();
 }
 
 void RenderRun::estimate_error() {
     estimated_samples_ = state_.samples;
     wavefront_.film().read([&](FilmSums film) {
-        const RelmseEstimate estimate =
-            estimated_relmse(film, plan_.film, scene_.film.width, result_.plan.film.count,
-                             options_.adaptive ? &errors_ : nullptr);
+        const RelmseEstimate estimate = estimated_relmse(
+            film, plan_.film, scene_.film.width, result_.plan.film.count, options_.adaptive);
         state_.relmse = estimate.value;
         state_.relmse_low = estimate.low;
         state_.relmse_high = estimate.high;
     });
 }
 
-std::span<const float> RenderRun::pixel_errors() {
-    if (errors_.empty()) // as they are when a render was resumed
-        estimate_error();
-    return errors_;
+std::vector<float> RenderRun::pixel_errors() {
+    std::vector<float> errors;
+    wavefront_.film().read([&](FilmSums film) {
+        errors = deciding_errors(film, plan_.film, scene_.film.width, result_.plan.film.count);
+    });
+    return errors;
 }
 
 SpectralImage RenderRun::image_so_far() const {

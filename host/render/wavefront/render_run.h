@@ -9,7 +9,6 @@
 
 #include <chrono>
 #include <functional>
-#include <span>
 #include <vector>
 
 namespace reradiant {
@@ -28,8 +27,8 @@ public:
     double seconds() const;
     Wavefront& wavefront() { return wavefront_; }
     const RenderPlan& plan() const { return plan_; }
-    /// Returns what each pixel adds to the estimated error, for adaptive renders.
-    std::span<const float> pixel_errors();
+    /// Returns what each pixel says of where the next samples of an adaptive render go.
+    std::vector<float> pixel_errors();
 
     /// The film holds so many samples now. Estimates the error where it is time to, shows the pass
     /// to the observer, and writes a checkpoint when it is time or when `goes_on`, which is asked
@@ -61,7 +60,6 @@ private:
     RenderProgress state_;
     /// Of the last estimate; the first one is made of four times as many as this.
     std::uint32_t estimated_samples_ = 2;
-    std::vector<float> errors_; ///< per pixel, if adaptive; empty before the first estimate
     double seconds_before_ = 0.0, observing_seconds_ = 0.0;
 };
 
