@@ -237,27 +237,30 @@ TEST_F(ExrImages, TilesAndLevelsAreReadAtFullSize) {
 }
 
 TEST_F(ExrImages, OfSeveralPartsTheFirstWithColoursIsRead) {
-    std::vector<Imf::Header> headers(2, Imf::Header(small, small));
-    headers[0].setName("depth");
-    headers[0].channels().insert("Z", Imf::Channel(Imf::FLOAT));
-    headers[1].setName("picture");
-    for (const char* name : {"R", "G", "B"})
-        headers[1].channels().insert(name, Imf::Channel(Imf::FLOAT));
-    for (Imf::Header& header : headers)
-        header.setType(Imf::SCANLINEIMAGE);
-    {
-        Imf::MultiPartOutputFile output(file().c_str(), headers.data(), 2);
-        const std::vector<float> values(12, 0.5f);
-        for (int part = 0; part < 2; ++part) {
-            Imf::FrameBuffer frame;
-            for (const char* name : {"R", "G", "B", "Z"})
-                frame.insert(name, Imf::Slice::Make(Imf::FLOAT, values.data(), small));
-            Imf::OutputPart writer(output, part);
-            writer.setFrameBuffer(frame);
-            writer.writePixels(3);
+    for (const char* lone : {"Z", "Y"}) { // depth, a mask
+        std::vector<Imf::Header> headers(2, Imf::Header(small, small));
+        headers[0].setName("other");
+        headers[0].channels().insert(lone, Imf::Channel(Imf::FLOAT));
+        headers[1].setName("picture");
+        for (const char* name : {"R", "G", "B"})
+            headers[1].channels().insert(name, Imf::Channel(Imf::FLOAT));
+        for (Imf::Header& header : headers)
+            header.setType(Imf::SCANLINEIMAGE);
+        {
+            Imf::MultiPartOutputFile output(file().c_str(), headers.data(), 2);
+            const std::vector<float> colours(12, 0.5f), others(12, 0.25f);
+            for (int part = 0; part < 2; ++part) {
+                Imf::FrameBuffer frame;
+                for (const char* name : {"R", "G", "B"})
+                    frame.insert(name, Imf::Slice::Make(Imf::FLOAT, colours.data(), small));
+                frame.insert(lone, Imf::Slice::Make(Imf::FLOAT, others.data(), small));
+                Imf::OutputPart writer(output, part);
+                writer.setFrameBuffer(frame);
+                writer.writePixels(3);
+            }
         }
+        expect_all(read(), {0.5, 0.5, 0.5}, 0.0);
     }
-    expect_all(read(), {0.5, 0.5, 0.5}, 0.0);
 }
 
 TEST_F(ExrImages, OtherLayoutsAreRefusedByName) {

@@ -73,13 +73,14 @@ void check_sampling(const Imf::Header& header, const ColourPart& found, const So
     }
 }
 
-/// Finds the colours in the first part that has some.
+/// Finds the colours in the first part that has some: R, G and B in any part stand before a lone Y
+/// in an earlier one, which may be a mask.
 ColourPart find_colours(Imf::MultiPartInputFile& input, const SourcePosition& at) {
-    for (int part = 0; part < input.parts(); ++part) {
-        const Imf::Header& header = input.header(part);
-        if (header.hasType() && Imf::isDeepData(header.type()))
-            continue;
-        for (const auto& [colours, channels] : layouts()) {
+    for (const auto& [colours, channels] : layouts()) {
+        for (int part = 0; part < input.parts(); ++part) {
+            const Imf::Header& header = input.header(part);
+            if (header.hasType() && Imf::isDeepData(header.type()))
+                continue;
             const bool has_all =
                 std::all_of(channels.begin(), channels.end(), [&](const std::string& name) {
                     return header.channels().findChannel(name) != nullptr;
