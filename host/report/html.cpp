@@ -84,8 +84,8 @@ void HtmlPage::figure(const std::string& svg, const std::string& caption) {
 
 std::string HtmlPage::text() const {
     const std::string title = markup_escaped(title_);
-    return fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-                       "<meta name=\"viewport\" content=\"width=device-width\">\n"
+    return fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\n"
+                       "<meta name=\"viewport\" content=\"width=device-width\"/>\n"
                        "<title>{0}</title>\n<style>\n{1}</style></head>\n<body>\n<h1>{0}</h1>\n"
                        "{2}</body></html>\n",
                        title, style, body_);

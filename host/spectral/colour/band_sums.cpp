@@ -37,31 +37,6 @@ bool is_finer_than_1_nm(const Spectrum& smooth) {
     return false;
 }
 
-/// Mean irradiance of every excitation band, as it counts in the sum.
-Eigen::VectorXd irradiance_of(const WavelengthGrid& bands, const Viewing& viewing,
-                              bool at_nanometres) {
-    const auto excites = [&](double nm) { return nm >= viewing.excites_from_nm; };
-    Eigen::VectorXd irradiance = Eigen::VectorXd::Zero(bands.count);
-    if (!at_nanometres) {
-        for (int i = 0; i < bands.count; ++i)
-            if (excites(bands.centre_nm(i)))
-                irradiance[i] = viewing.lamp(bands.centre_nm(i));
-        return irradiance;
-    }
-    const double from = bands.lower_edge_nm(0), width = bands.count * bands.step_nm;
-    const int pieces = std::max(bands.count, static_cast<int>(std::lround(width)));
-    const double piece_nm = width / pieces;
-    const LampAtNanometres lamp(viewing.lamp);
-    for (int piece = 0; piece < pieces; ++piece) {
-        const double nm = from + (piece + 0.5) * piece_nm;
-        if (!excites(nm))
-            continue;
-        const double light = lamp(nm) * piece_nm / bands.step_nm;
-        interpolate(bands, nm, [&](int band, double share) { irradiance[band] += share * light; });
-    }
-    return irradiance;
-}
-
 /// The standard's ends count in full.
 constexpr double whole_end_nm = 0.25;
 
@@ -99,6 +74,47 @@ double LampAtNanometres::operator()(double nm) const {
         light += Spectrum::line(line.centre_nm, line.width_nm, line.integral)
                      .average(nm - 0.5, nm + 0.5);
     return light;
+}
+
+Eigen::VectorXd irradiance_of(const WavelengthGrid& bands, const Viewing& viewing,
+                              bool at_nanometres) {
+    const auto excites = [&](double nm) { return nm >= viewing.excites_from_nm; };
+    Eigen::VectorXd irradiance = Eigen::VectorXd::Zero(bands.count);
+    if (!at_nanometres) {
+        for (int i = 0; i < bands.count; ++i)
+            if (excites(bands.centre_nm(i)))
+                irradiance[i] = viewing.lamp(bands.centre_nm(i));
+        return irradiance;
+    }
+    const double from = bands.lower_edge_nm(0), width = bands.count * bands.step_nm;
+    const int pieces = std::max(bands.count, static_cast<int>(std::lround(width)));
+    const double piece_nm = width / pieces;
+    const LampAtNanometres lamp(viewing.lamp);
+    for (int piece = 0; piece < pieces; ++piece) {
+        const double nm = from + (piece + 0.5) * piece_nm;
+        if (!excites(nm))
+            continue;
+        const double light = lamp(nm) * piece_nm / bands.step_nm;
+        interpolate(bands, nm, [&](int band, double share) { irradiance[band] += share * light; });
+    }
+    return irradiance;
+}
+
+std::vector<double> lights_of(const WavelengthGrid& bands, const Spectrum& illuminant,
+                              bool at_nanometres) {
+    std::vector<double> lights = illuminant.at(bands.centres_nm());
+    if (at_nanometres)
+        for (int o = 0; o < bands.count; ++o)
+            lights[static_cast<std::size_t>(o)] =
+                illuminant.average(bands.lower_edge_nm(o), bands.upper_edge_nm(o));
+    return lights;
+}
+
+SumRange sum_range(const WavelengthGrid& bands, ColourSum sum, bool at_nanometres) {
+    if (!at_nanometres)
+        return SumRange::Bands;
+    return sum == ColourSum::E308 || reaches_far_enough(bands) ? SumRange::E308
+                                                               : SumRange::WithinBands;
 }
 
 BandSums::BandSums(const WavelengthGrid& emission, const WavelengthGrid& excitation,

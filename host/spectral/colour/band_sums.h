@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <vector>
+
 namespace reradiant {
 
 /// Range of the weights of ASTM E308.
@@ -65,6 +67,15 @@ struct Viewing {
     double excites_from_nm;
 };
 
+/// Mean irradiance of every excitation band, as it counts in the sum: at its centre, or over all of
+/// its nanometres.
+Eigen::VectorXd irradiance_of(const WavelengthGrid& bands, const Viewing& viewing,
+                              bool at_nanometres);
+/// Light of every emission band, as its radiance factor is divided by it: at its centre, or its
+/// mean.
+std::vector<double> lights_of(const WavelengthGrid& bands, const Spectrum& illuminant,
+                              bool at_nanometres);
+
 /// XYZ of what is reflected, re-radiated, and reflected by the perfect diffuser, in one scale.
 struct Sums {
     Xyz reflected{}, luminescent{}, white{};
@@ -76,6 +87,9 @@ enum class SumRange {
     WithinBands, ///< every nanometre within the bands
     E308,        ///< every nanometre from 360 to 780 nm
 };
+
+/// The range that ColourSum stands for, where it is decided whether nanometres are summed.
+SumRange sum_range(const WavelengthGrid& bands, ColourSum sum, bool at_nanometres);
 
 /// The sums of a colour as they depend on the lamp, the observer and the grids: linear in the
 /// matrix, so that many matrices on the same grids share them.
@@ -89,13 +103,19 @@ public:
     Exitance exitance_of(const ReradiationMatrix& matrix) const;
     Sums sums_of(const Exitance& exitance) const;
 
+    const Eigen::VectorXd& irradiance() const { return irradiance_; }
+    /// What reflectance and re-radiated light count by, (XYZ, emission bands).
+    const Eigen::Matrix3Xd& reflected() const { return reflected_; }
+    const Eigen::Matrix3Xd& luminescent() const { return luminescent_; }
+    const Xyz& white() const { return white_; }
+
 private:
     void add_bands(const WavelengthGrid& bands, const Viewing& viewing);
     void add_nanometres(const WavelengthGrid& bands, const Viewing& viewing, double from_nm,
                         double to_nm);
 
-    Eigen::VectorXd irradiance_;               ///< per excitation band
-    Eigen::Matrix3Xd reflected_, luminescent_; ///< (XYZ, emission bands)
+    Eigen::VectorXd irradiance_;
+    Eigen::Matrix3Xd reflected_, luminescent_;
     Xyz white_{};
 };
 

@@ -61,14 +61,8 @@ const BandSums& LampColours::sums(OnGrids& grids, SumRange range) const {
 
 const std::vector<double>& LampColours::light(OnGrids& grids, bool at_nanometres) const {
     std::optional<std::vector<double>>& made = grids.light[at_nanometres ? 1 : 0];
-    if (made)
-        return *made;
-    const WavelengthGrid& bands = grids.emission;
-    made = illuminant_.at(bands.centres_nm());
-    if (at_nanometres)
-        for (int o = 0; o < bands.count; ++o)
-            (*made)[static_cast<std::size_t>(o)] =
-                illuminant_.average(bands.lower_edge_nm(o), bands.upper_edge_nm(o));
+    if (!made)
+        made = lights_of(grids.emission, illuminant_, at_nanometres);
     return *made;
 }
 
@@ -115,13 +109,8 @@ MatrixColour LampColours::colour_of(const ReradiationMatrix& matrix,
     const bool has_lines = is_automatic && !illuminant_.lines().empty();
     const bool is_fine = at_nanometres.value_or(sum_ == ColourSum::E308 || has_lines ||
                                                 error.share > most_misjudged);
-    SumRange range = SumRange::Bands;
-    if (is_fine)
-        range = sum_ == ColourSum::E308 || reaches_far_enough(matrix.emission)
-                    ? SumRange::E308
-                    : SumRange::WithinBands;
     OnGrids& grids = on_grids(matrix);
-    const BandSums& summed = sums(grids, range);
+    const BandSums& summed = sums(grids, sum_range(matrix.emission, sum_, is_fine));
     const Exitance exitance = summed.exitance_of(matrix);
     MatrixColour colour = colour_from(summed.sums_of(exitance));
     colour.nm = matrix.emission.centres_nm();

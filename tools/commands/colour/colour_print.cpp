@@ -62,12 +62,6 @@ void print_differences(const ColourReport& report, const std::string& from) {
 
 } // namespace
 
-std::string key_of(const ColourReport& report, const ColourOptions& options) {
-    if (options.observers.size() == 1)
-        return report.illuminant;
-    return report.illuminant + "/" + observer_name(report.observer);
-}
-
 void print_colour(const ColourReport& report, const ColourOptions& options) {
     const MatrixColour& colour = report.colour;
     const std::size_t brightest = report.brightest_band();

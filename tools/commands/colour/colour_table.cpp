@@ -1,0 +1,277 @@
+#include "tools/commands/colour/colour_table.h"
+
+#include "host/base/atomic_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <optional>
+
+namespace reradiant {
+
+namespace {
+
+/// A cell of a row from the colour that the row is of.
+struct Column {
+    std::string name;
+    std::function<std::string(const SeenSample&, const SeenColour&)> cell;
+};
+using Columns = std::vector<Column>;
+
+/// Adds columns of numbers in one format.
+class NumberColumns {
+public:
+    NumberColumns(Columns& columns, std::string format)
+        : columns_(columns), format_(std::move(format)) {}
+
+    /// `value` takes a report and returns a number, or an optional one.
+    template <typename Value>
+    void add(const std::string& name, const Value& value) {
+        columns_.push_back({name, [format = format_, value](const auto&, const SeenColour& seen) {
+                                const std::optional<double> number = value(seen.report);
+                                return number && std::isfinite(*number)
+                                           ? fmt::format(fmt::runtime(format), *number)
+                                           : std::string();
+                            }});
+    }
+
+    /// The indices of what `part` takes out of a report.
+    template <typename Part>
+    void add_indices(const std::string& prefix, const Part& part) {
+        using Optional = std::optional<double>;
+        add(prefix + "whiteness_cie", [part](const ColourReport& report) {
+            const auto& whiteness = part(report).whiteness;
+            return whiteness ? Optional(whiteness->whiteness) : Optional();
+        });
+        add(prefix + "tint_cie", [part](const ColourReport& report) {
+            const auto& whiteness = part(report).whiteness;
+            return whiteness ? Optional(whiteness->tint) : Optional();
+        });
+        add(prefix + "r457", [part](const ColourReport& report) { return part(report).r457; });
+        add(prefix + "whiteness_e313", [part](const ColourReport& report) {
+            const auto& e313 = part(report).e313;
+            return e313 ? Optional(e313->whiteness) : Optional();
+        });
+        add(prefix + "yellowness_e313", [part](const ColourReport& report) {
+            const auto& e313 = part(report).e313;
+            return e313 ? Optional(e313->yellowness) : Optional();
+        });
+    }
+
+    /// Three numbers, or two, with a name each.
+    template <typename Part, typename Numbers>
+    void add_each(const std::vector<std::string>& names, const Part& part, Numbers numbers) {
+        for (std::size_t c = 0; c < names.size(); ++c)
+            add(names[c], [part, numbers, c](const ColourReport& report) {
+                return numbers(part(report))[c];
+            });
+    }
+
+private:
+    Columns& columns_;
+    std::string format_;
+};
+
+const IndexedColour& whole(const ColourReport& report) {
+    return report;
+}
+const IndexedColour& without_uv(const ColourReport& report) {
+    return report.uv_excluded;
+}
+
+void add_names(Columns& columns, const ColourOptions& options, bool all) {
+    columns.push_back(
+        {"sample", [](const SeenSample& sample, const auto&) { return sample.sample.name; }});
+    if (all)
+        columns.push_back({"geometry", [](const SeenSample& sample, const auto&) {
+                               return sample.sample.matrix.geometry;
+                           }});
+    columns.push_back(
+        {"lamp", [](const auto&, const SeenColour& seen) { return seen.report.illuminant; }});
+    if (all || options.observers.size() > 1)
+        columns.push_back({"observer", [](const auto&, const SeenColour& seen) {
+                               return observer_name(seen.report.observer);
+                           }});
+}
+
+void add_differences(NumberColumns& numbers, const std::vector<std::string>& names) {
+    const auto differences = [](const ColourReport& report) {
+        const ColourDifferences of = report.differences.value_or(ColourDifferences{});
+        return std::array{of.cie1976, of.cie1994, of.ciede2000, of.cmc21};
+    };
+    numbers.add_each(names, differences, [](const std::array<double, 4>& all) { return all; });
+    numbers.add("metamerism", [](const ColourReport& report) { return report.metamerism; });
+}
+
+template <typename Part>
+void add_colour(Columns& columns, const Part& part) {
+    NumberColumns numbers(columns, "{:.2f}");
+    numbers.add("Y", [part](const ColourReport& report) { return part(report).colour.xyz[1]; });
+    numbers.add_each({"L*", "a*", "b*"}, part, [](const auto& of) { return of.colour.lab; });
+    numbers.add("C*", [part](const ColourReport& report) { return part(report).lch[1]; });
+    numbers.add("h", [part](const ColourReport& report) { return part(report).lch[2]; });
+    NumberColumns(columns, "{:.4f}").add_each({"x", "y"}, part, [](const auto& of) {
+        return of.colour.xy;
+    });
+}
+
+/// The polygons that the colour passes, where polygons are tested.
+void add_polygons(Columns& columns, const ColourOptions& options) {
+    if (options.polygons.empty())
+        return;
+    columns.push_back({"polygons", [](const auto&, const SeenColour& seen) {
+                           std::string passed;
+                           for (const PolygonVerdict& verdict : seen.report.polygons)
+                               if (verdict.result.passes())
+                                   passed += (passed.empty() ? "" : "; ") + verdict.polygon.name;
+                           return passed.empty() && !seen.report.polygons.empty() ? "none" : passed;
+                       }});
+}
+
+ColourTable table_of(const Columns& columns, const std::vector<SeenSample>& samples) {
+    ColourTable table;
+    for (const Column& column : columns)
+        table.header.push_back(column.name);
+    for (const SeenSample& sample : samples)
+        for (const SeenColour& seen : sample.colours) {
+            std::vector<std::string>& row = table.rows.emplace_back();
+            for (const Column& column : columns)
+                row.push_back(column.cell(sample, seen));
+        }
+    return table;
+}
+
+void drop_empty_columns(ColourTable& table) {
+    for (std::size_t c = table.header.size(); c-- > 0;) {
+        const auto at = static_cast<std::ptrdiff_t>(c);
+        if (std::any_of(table.rows.begin(), table.rows.end(),
+                        [&](const auto& row) { return !row[c].empty(); }))
+            continue;
+        table.header.erase(table.header.begin() + at);
+        for (auto& row : table.rows)
+            row.erase(row.begin() + at);
+    }
+}
+
+/// Characters, not bytes.
+std::size_t width(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+        return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+    }));
+}
+
+bool is_a_number(const std::string& text) {
+    char* end = nullptr;
+    std::strtod(text.c_str(), &end);
+    return end != text.c_str() && *end == '\0';
+}
+
+std::string csv_cell(const std::string& text) {
+    if (text.find_first_of(",\"\n\r") == std::string::npos)
+        return text;
+    std::string quoted = "\"";
+    for (const char character : text)
+        quoted += character == '"' ? std::string("\"\"") : std::string(1, character);
+    return quoted + '"';
+}
+
+} // namespace
+
+ColourTable short_table(const std::vector<SeenSample>& samples, const ColourOptions& options) {
+    Columns columns;
+    add_names(columns, options, false);
+    add_colour(columns, whole);
+    NumberColumns numbers(columns, "{:.2f}");
+    numbers.add_indices("", whole);
+    if (!options.against.empty())
+        add_differences(numbers, {"dE76", "dE94", "dE2000", "CMC(2:1)"});
+    add_polygons(columns, options);
+    ColourTable table = table_of(columns, samples);
+    drop_empty_columns(table);
+    return table;
+}
+
+ColourTable ultraviolet_table(const std::vector<SeenSample>& samples,
+                              const ColourOptions& options) {
+    Columns columns;
+    add_names(columns, options, false);
+    add_colour(columns, without_uv);
+    NumberColumns(columns, "{:.2f}").add_indices("", without_uv);
+    ColourTable table = table_of(columns, samples);
+    drop_empty_columns(table);
+    return table;
+}
+
+ColourTable whole_table(const std::vector<SeenSample>& samples, const ColourOptions& options) {
+    Columns columns;
+    add_names(columns, options, true);
+    columns.push_back({"sums", [](const auto&, const SeenColour& seen) {
+                           return seen.report.colour.at_nanometres ? "1 nm" : "bands";
+                       }});
+    NumberColumns numbers(columns, "{:.10g}");
+    const auto xyz = [](const auto& of) { return of.colour.xyz; };
+    const auto lab = [](const auto& of) { return of.colour.lab; };
+    numbers.add_each({"X", "Y", "Z"}, whole, xyz);
+    numbers.add_each({"x", "y"}, whole, [](const auto& of) { return of.colour.xy; });
+    numbers.add_each({"L", "a", "b"}, whole, lab);
+    numbers.add("C", [](const ColourReport& report) { return report.lch[1]; });
+    numbers.add("h", [](const ColourReport& report) { return report.lch[2]; });
+    numbers.add("Y_reflected",
+                [](const ColourReport& report) { return report.colour.luminance_reflected; });
+    numbers.add_indices("", whole);
+    numbers.add("uv_share", [](const ColourReport& report) { return report.ultraviolet_share; });
+    const std::string prefix = "uv_excluded_";
+    numbers.add_each({prefix + "X", prefix + "Y", prefix + "Z"}, without_uv, xyz);
+    numbers.add_each({prefix + "L", prefix + "a", prefix + "b"}, without_uv, lab);
+    numbers.add_indices(prefix, without_uv);
+    if (!options.against.empty())
+        add_differences(numbers, {"cie1976", "cie1994", "ciede2000", "cmc21"});
+    add_polygons(columns, options);
+    return table_of(columns, samples);
+}
+
+std::string aligned(const ColourTable& table) {
+    std::vector<std::size_t> widths;
+    for (std::size_t c = 0; c < table.header.size(); ++c) {
+        widths.push_back(width(table.header[c]));
+        for (const auto& row : table.rows)
+            widths.back() = std::max(widths.back(), width(row[c]));
+    }
+    std::vector<bool> to_the_right;
+    for (std::size_t c = 0; c < table.header.size(); ++c)
+        to_the_right.push_back(
+            std::all_of(table.rows.begin(), table.rows.end(),
+                        [c](const auto& row) { return row[c].empty() || is_a_number(row[c]); }));
+    std::string text;
+    const auto add_line = [&](const std::vector<std::string>& cells) {
+        std::string line;
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            const std::string blanks(widths[c] - width(cells[c]), ' ');
+            line += (c > 0 ? "  " : "") + (to_the_right[c] ? blanks + cells[c] : cells[c] + blanks);
+        }
+        text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
+    };
+    add_line(table.header);
+    for (const auto& row : table.rows)
+        add_line(row);
+    return text;
+}
+
+void write_csv(const std::filesystem::path& file, const ColourTable& table) {
+    std::string text;
+    const auto add_line = [&](const std::vector<std::string>& cells) {
+        for (std::size_t c = 0; c < cells.size(); ++c)
+            text += (c > 0 ? "," : "") + csv_cell(cells[c]);
+        text += '\n';
+    };
+    add_line(table.header);
+    for (const auto& row : table.rows)
+        add_line(row);
+    write_text_atomically(file, text);
+}
+
+} // namespace reradiant
