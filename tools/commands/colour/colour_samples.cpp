@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -106,6 +107,15 @@ void require_use_of_geometry(const ColourOptions& options, const std::vector<fs:
                       "--geometry is for materials (.toml, --preset) and for files of `measure`");
 }
 
+void shorten_names(std::vector<ColourSample>& samples) {
+    std::map<std::string, int> uses;
+    for (const ColourSample& sample : samples)
+        ++uses[fs::path(sample.name).filename().string()];
+    for (ColourSample& sample : samples)
+        if (std::string name = fs::path(sample.name).filename().string(); uses[name] == 1)
+            sample.short_name = std::move(name);
+}
+
 } // namespace
 
 std::vector<fs::path> sample_files(const ColourOptions& options) {
@@ -131,13 +141,15 @@ std::vector<ColourSample> read_samples(const ColourOptions& options) {
             is_preset ? options.presets[k - options.samples.size()] : options.samples[k].string();
         if (!names.insert(name).second)
             throw_input_error({name}, "the sample is given twice", "name every sample once");
-        samples.push_back({std::move(name), files[k], read_matrix(files[k], options)});
+        samples.push_back({name, name, files[k], read_matrix(files[k], options)});
     }
+    shorten_names(samples);
     return samples;
 }
 
 ColourSample read_reference(const ColourOptions& options) {
-    return {options.against.string(), options.against, read_matrix(options.against, options)};
+    return {options.against.string(), options.against.filename().string(), options.against,
+            read_matrix(options.against, options)};
 }
 
 } // namespace reradiant

@@ -39,7 +39,7 @@ std::string title_of(const std::string& name, const ColourReport& report) {
 
 std::string field(double x, double y, const SeenSample& sample, const SeenColour& seen,
                   const std::string& reference) {
-    const std::string title = title_of(sample.sample.name, seen.report);
+    const std::string title = title_of(sample.sample.short_name, seen.report);
     if (!seen.against)
         return half(x, y, field_width, seen.report.colour, title);
     return half(x, y, 0.5 * field_width, seen.report.colour, title) +
@@ -53,7 +53,7 @@ std::string swatches(const std::vector<SeenSample>& samples, Observer observer,
                      const ColourOptions& options) {
     std::size_t longest = 0;
     for (const SeenSample& sample : samples)
-        longest = std::max(longest, shortened(sample.sample.name).size());
+        longest = std::max(longest, shortened(sample.sample.short_name).size());
     const double left = letter * static_cast<double>(longest) + 16;
     std::string content;
     for (std::size_t k = 0; k < options.lamps.size(); ++k)
@@ -63,11 +63,11 @@ std::string swatches(const std::vector<SeenSample>& samples, Observer observer,
     double y = head;
     for (const SeenSample& sample : samples) {
         content += svg::text_at(left - 10, y + 0.5 * field_height + 4, "end",
-                                shortened(sample.sample.name));
+                                shortened(sample.sample.short_name));
         double x = left;
         for (const SeenColour& seen : sample.colours)
             if (seen.report.observer == observer) {
-                content += field(x, y, sample, seen, options.against.string());
+                content += field(x, y, sample, seen, options.against.filename().string());
                 x += field_width + gap;
             }
         y += field_height + gap;
