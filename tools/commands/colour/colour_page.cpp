@@ -218,9 +218,9 @@ std::string colour_page(const std::vector<SeenSample>& samples, const ColourOpti
     add_indices(page, samples, options);
     add_differences(page, samples, options);
     add_diagrams(page, samples, options);
-    add_factors(page, samples, options);
     add_lamps(page, samples);
     add_warnings(page, samples);
+    add_factors(page, samples, options);
     return page.text();
 }
 
