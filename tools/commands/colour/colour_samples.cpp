@@ -83,8 +83,32 @@ ReradiationMatrix declared_matrix(const fs::path& file, const std::string& asked
     return matrix;
 }
 
+/// A lamp behind a blank is taken as a sample.
+void require_file(const fs::path& file) {
+    std::error_code ignored;
+    if (!fs::exists(file, ignored) && !file.has_extension())
+        throw_input_error({file.string()}, "cannot be opened",
+                          "give a file; lamps and observers stand between commas, as in "
+                          "--illuminant D65,A");
+}
+
+/// True for a table that is read as a spectrum and says nothing of re-radiation.
+bool is_spectrum(const fs::path& file) {
+    try {
+        read_spectrum(file);
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 ReradiationMatrix read_matrix(const fs::path& file, const ColourOptions& options) {
+    require_file(file);
     const FileKind kind = file_kind(file);
+    if (kind == FileKind::Spectrum && is_spectrum(file))
+        throw_input_error({file.string()}, "this is a spectrum, not a sample",
+                          "write a material (.toml) with a substrate of this reflectance; a lamp "
+                          "is given by --lamp");
     if (const char* const name = other_kind(kind))
         throw_input_error({file.string()}, fmt::format("this is {}, not a sample", name),
                           samples_are);
@@ -99,6 +123,7 @@ ReradiationMatrix read_matrix(const fs::path& file, const ColourOptions& options
 void require_use_of_geometry(const ColourOptions& options, const std::vector<fs::path>& files) {
     asked_geometry(options);
     if (options.geometry.empty() || std::any_of(files.begin(), files.end(), [](const fs::path& f) {
+            require_file(f);
             return takes_geometry(file_kind(f));
         }))
         return;
