@@ -51,6 +51,21 @@ std::vector<double> angles(const std::string& text) {
     }
 }
 
+void require_above_horizon(const std::string& text, double theta_i, double theta_o) {
+    const auto is_above = [](double theta) { return theta >= 0.0 && theta < 90.0; };
+    if (is_above(theta_i) && theta_o > 90.0 && theta_o <= 180.0)
+        throw std::invalid_argument(
+            fmt::format("'{}' looks at the far side, from {:g} degrees: the materials here are "
+                        "opaque and transmit nothing; thetas are from 0 to below 90",
+                        text, theta_o));
+    for (const double theta : {theta_i, theta_o})
+        if (!is_above(theta))
+            throw std::invalid_argument(
+                fmt::format("'{}' has a direction of {:g} degrees from the normal, which is {}; "
+                            "thetas are from 0 to below 90",
+                            text, theta, theta < 0.0 ? "negative" : "on or below the horizon"));
+}
+
 /// What goes into the port of the light that interfaces, flakes and a conductor reflect, unit 1:
 /// Simpson's rule over the cone around the mirror's direction. The rings lie closer towards its
 /// axis, where narrow lobes have their peak.
@@ -120,25 +135,25 @@ ViewingGeometry viewing_geometry(const std::string& text) {
     if (text == "45/0")
         return {};
     if (text == "0/45")
-        return {.theta_i_deg = 0.0, .theta_o_deg = 45.0};
+        return {.theta_i_deg = 0.0, .theta_o_deg = 45.0, .name = text};
     if (text == "8/d" || text == "8/de")
         return {.kind = Kind::DirectionalHemispherical,
                 .theta_i_deg = 8.0,
-                .specular_included = text == "8/d"};
+                .specular_included = text == "8/d",
+                .name = text};
     if (text == "d/8" || text == "de/8")
         return {.kind = Kind::HemisphericalDirectional,
                 .theta_i_deg = 8.0,
-                .specular_included = text == "d/8"};
+                .specular_included = text == "d/8",
+                .name = text};
     const std::vector<double> given = angles(text);
     if (given.size() < 2 || given.size() > 3)
         refuse(text);
-    for (int k = 0; k < 2; ++k)
-        if (!(given[static_cast<std::size_t>(k)] >= 0.0 &&
-              given[static_cast<std::size_t>(k)] < 90.0))
-            refuse(text);
+    require_above_horizon(text, given[0], given[1]);
     return {.theta_i_deg = given[0],
             .theta_o_deg = given[1],
-            .phi_deg = given.size() > 2 ? given[2] : 0.0};
+            .phi_deg = given.size() > 2 ? given[2] : 0.0,
+            .name = text};
 }
 
 ReradiationMatrix geometry_matrix(const Material& material, const ViewingGeometry& geometry) {
@@ -160,6 +175,7 @@ ReradiationMatrix geometry_matrix(const Material& material, const ViewingGeometr
     ReradiationMatrix matrix;
     matrix.emission = matrix.excitation = bands;
     matrix.values = std::move(values);
+    matrix.geometry = geometry.name;
     return matrix;
 }
 

@@ -15,6 +15,7 @@ struct ViewingGeometry {
     double phi_deg = 0.0; ///< azimuth of the view from the incidence; 180 is the mirror's side
     /// Hemispherical geometries: the mirror's reflection is kept, or goes into a trap.
     bool specular_included = true;
+    std::string name = "45/0"; ///< as it was asked for
 };
 
 /// The half angle of the trap's port as the sample sees it, around the mirror's direction. What a
@@ -23,7 +24,8 @@ struct ViewingGeometry {
 inline constexpr double specular_port_deg = 5.0;
 
 /// Reads 45/0, 0/45, 8/d, d/8 (specular included), 8/de, de/8 (excluded), or
-/// THETA_I:THETA_O[:PHI] in degrees, 0 <= theta < 90; std::invalid_argument lists these.
+/// THETA_I:THETA_O[:PHI] in degrees, 0 <= theta < 90; std::invalid_argument lists these, or says
+/// that a direction lies below the horizon.
 ViewingGeometry viewing_geometry(const std::string& text);
 
 /// The radiance factors of a layered material as a matrix of the material's own bands: what a

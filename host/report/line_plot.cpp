@@ -13,17 +13,11 @@ namespace reradiant::svg {
 
 namespace {
 
-/// Told apart by readers with any colour vision (Okabe and Ito 2008); black comes last.
-constexpr std::array colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                "#e69f00", "#56b4e9", "#000000"};
 /// When the colours are used up the lines change their dashes.
 constexpr std::array dashes = {"", "6 3", "2 3", "8 3 2 3"};
 
-const char* colour_of(std::size_t index) {
-    return colours[index % colours.size()];
-}
 std::string dashes_of(std::size_t index) {
-    const char* const pattern = dashes[index / colours.size() % dashes.size()];
+    const char* const pattern = dashes[index / series_colours % dashes.size()];
     return *pattern ? fmt::format(" stroke-dasharray=\"{}\"", pattern) : "";
 }
 
@@ -110,7 +104,7 @@ std::string draw_band(const Frame& frame, const Axes& axes, const Series& series
         path += outline + "Z";
     }
     return fmt::format("<path d=\"{}\" fill=\"{}\" fill-opacity=\"0.2\"/>\n", path,
-                       colour_of(index));
+                       series_colour(index));
 }
 
 std::string draw_line(const Frame& frame, const Axes& axes, const Series& series,
@@ -121,13 +115,13 @@ std::string draw_line(const Frame& frame, const Axes& axes, const Series& series
             path += step(frame, k == run.front() ? 'M' : 'L', series.x[k], series.y[k]);
     return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\" "
                        "stroke-linejoin=\"round\"{}/>\n",
-                       path, colour_of(index), dashes_of(index));
+                       path, series_colour(index), dashes_of(index));
 }
 
 std::string mark(double x, double y, std::size_t index) {
     return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"{}\" "
                        "fill-opacity=\"0.75\"/>\n",
-                       x, y, colour_of(index));
+                       x, y, series_colour(index));
 }
 
 std::string draw_points(const Frame& frame, const Axes& axes, const Series& series,
@@ -150,11 +144,11 @@ std::string draw_legend(const Frame& frame, const std::vector<Series>& series) {
         if (!series[k].low.empty())
             legend += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"24\" height=\"11\" "
                                   "fill=\"{}\" fill-opacity=\"0.2\"/>\n",
-                                  left, y - 5.5, colour_of(k));
+                                  left, y - 5.5, series_colour(k));
         legend += series[k].points ? mark(left + 12, y, k)
                                    : fmt::format("<path d=\"M{:.1f} {:.1f}h24\" stroke=\"{}\" "
                                                  "stroke-width=\"1.8\"{}/>\n",
-                                                 left, y, colour_of(k), dashes_of(k));
+                                                 left, y, series_colour(k), dashes_of(k));
         legend += text_at(left + 31, y + 4, "start", series[k].label);
         y += row_height;
     }

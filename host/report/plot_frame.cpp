@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace reradiant::svg {
@@ -102,6 +103,13 @@ Axis make_axis(double low, double high, bool is_log, bool exact) {
     else
         make_linear(axis, exact);
     return axis;
+}
+
+const char* series_colour(std::size_t index) {
+    // Okabe and Ito 2008; black comes last.
+    constexpr std::array<const char*, series_colours> colours = {
+        "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+    return colours[index % colours.size()];
 }
 
 std::string number_label(double value) {

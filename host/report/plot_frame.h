@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,11 @@ struct Axis {
 /// An axis that holds [low, high] (both > 0 when logarithmic). A range without extent is widened.
 /// With `exact` the ends stay where they are, otherwise they move out to a tick.
 Axis make_axis(double low, double high, bool is_log, bool exact);
+
+/// The colour of a plot's series: told apart by readers with any colour vision, they return after
+/// `series_colours`.
+const char* series_colour(std::size_t index);
+inline constexpr std::size_t series_colours = 7;
 
 /// A number as plots print it: few digits, powers of ten as such.
 std::string number_label(double value);

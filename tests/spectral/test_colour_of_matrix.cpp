@@ -1,4 +1,7 @@
 #include "reradiant/colour_of_matrix.h"
+
+#include "host/spectral/colour/lamp.h"
+#include "host/spectral/colour/lamp_colours.h"
 #include "reradiant/spectral_files.h"
 #include "tests/spectral/synthetic_recipes.h"
 
@@ -273,6 +276,36 @@ TEST(ColourOfMatrix, WarnsOfUnlitExcitationAndOfUnknownReflectance) {
     const auto unknown = colour_warnings(cut, illuminant("D65"), "D65");
     ASSERT_EQ(unknown.size(), 1u);
     EXPECT_NE(unknown[0].find("300 to 600 nm"), std::string::npos) << unknown[0];
+}
+
+TEST(ColourOfMatrix, WarnsOfALampThatEndsWithinTheExcitation) {
+    const ReradiationMatrix orange = shipped("synthetic-orange.csv");
+    const Spectrum blue = cut_to(Spectrum::constant(1.0), 300.0, 480.0);
+    const auto warnings = colour_warnings(orange, blue, "blue.csv");
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("blue.csv ends at 480 nm"), std::string::npos) << warnings[0];
+    const Eigen::MatrixXd fluorescence = orange.fluorescent_part();
+    const double dark = fluorescence.rightCols(30).sum() / fluorescence.sum(); // from 490 nm on
+    EXPECT_NE(warnings[0].find(fmt::format("({:.3g} % of what", 100.0 * dark)), std::string::npos)
+        << warnings[0];
+}
+
+// The sums are kept between matrices, and grids do not mix.
+TEST(ColourOfMatrix, ManyMatricesShareTheirSums) {
+    const std::vector<ReradiationMatrix> all = {
+        shipped("synthetic-orange.csv"), shipped("neon-yellow.csv"),
+        reflecting([](double nm) { return nm / 1000.0; }), shipped("synthetic-green.csv")};
+    for (const char* lamp : {"D65", "FL11"}) {
+        LampColours colours(illuminant(lamp), ColourSum::Automatic);
+        for (int round = 0; round < 2; ++round)
+            for (const ReradiationMatrix& matrix : all) {
+                const MatrixColour shared = colours.colour_of(matrix);
+                const MatrixColour alone = colour_under(matrix, lamp, ColourSum::Automatic);
+                EXPECT_EQ(shared.xyz, alone.xyz);
+                EXPECT_EQ(shared.reflected, alone.reflected);
+                EXPECT_EQ(shared.reason, alone.reason);
+            }
+    }
 }
 
 TEST(ColourOfMatrix, WarnsOfWhiteThatTheBandsDoNotSee) {

@@ -123,3 +123,21 @@ TEST(Lamp, FilesAreDarkOutsideTheirData) {
     EXPECT_THROW(read_lamp(scratch("negative.csv", "nm,value\n400,1\n500,-1\n700,3\n")), Error);
     EXPECT_THROW(read_lamp(scratch("infrared.csv", "nm,value\n850,1\n900,3\n")), Error);
 }
+
+// Lab is relative to a white under the same lamp: where the eye sees almost none of that, it means
+// little.
+TEST(Lamp, LightThatTheEyeHardlySeesIsWarnedOf) {
+    for (const char* text : {"L:365", "L:405", "L:760", "L:380:30"}) {
+        const std::string warning =
+            faint_white_warning(lamp_from_text(text), Observer::Cie1931Deg2);
+        EXPECT_NE(warning.find(std::string("D65+30*") + text), std::string::npos)
+            << text << ' ' << warning;
+    }
+    EXPECT_NE(faint_white_warning(lamp_from_text("L:365+L:370"), Observer::Cie1964Deg10)
+                  .find("D65+30*L:365"),
+              std::string::npos);
+    for (const char* text : {"D65", "A", "E", "FL11", "LED-V1", "HP1", "P:1500", "D65+30*L:365",
+                             "L:450", "L:700", "M0", "M2"})
+        for (const Observer observer : {Observer::Cie1931Deg2, Observer::Cie2015Deg10})
+            EXPECT_EQ(faint_white_warning(lamp_from_text(text), observer), "") << text;
+}

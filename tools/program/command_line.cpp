@@ -62,6 +62,11 @@ CommandOption& CommandOption::delimiter(char character) {
     return *this;
 }
 
+CommandOption& CommandOption::one_at_a_time() {
+    option_->allow_extra_args(false);
+    return *this;
+}
+
 CommandOption& CommandOption::excludes(const CommandOption& other) {
     option_->excludes(other.option_);
     return *this;

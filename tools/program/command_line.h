@@ -40,6 +40,9 @@ public:
     CommandOption& one_of(std::vector<std::string> words);
     /// One text holds several values.
     CommandOption& delimiter(char character);
+    /// Of an option with several values: it takes the one behind its name, and is repeated for
+    /// more. Positional arguments may follow it.
+    CommandOption& one_at_a_time();
     CommandOption& excludes(const CommandOption& other);
     /// The heading that the help lists it under.
     CommandOption& group(const std::string& heading);

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <vector>
+
 namespace reradiant {
 
 /// Range of the weights of ASTM E308.
@@ -37,9 +39,9 @@ private:
     bool is_fine_;
 };
 
-/// The parts that a colour is summed from.
+/// What leaves a sample per emission band.
 struct Exitance {
-    Eigen::VectorXd reflectance, luminescent; ///< per emission band
+    Eigen::VectorXd reflectance, luminescent;
 };
 
 /// All that the sums depend on beside the matrix.
@@ -65,21 +67,58 @@ struct Viewing {
     double excites_from_nm;
 };
 
+/// Mean irradiance of every excitation band, as it counts in the sum: at its centre, or over all of
+/// its nanometres.
+Eigen::VectorXd irradiance_of(const WavelengthGrid& bands, const Viewing& viewing,
+                              bool at_nanometres);
+/// Light of every emission band, as its radiance factor is divided by it: at its centre, or its
+/// mean.
+std::vector<double> lights_of(const WavelengthGrid& bands, const Spectrum& illuminant,
+                              bool at_nanometres);
+
 /// XYZ of what is reflected, re-radiated, and reflected by the perfect diffuser, in one scale.
 struct Sums {
     Xyz reflected{}, luminescent{}, white{};
 };
 
-/// What leaves the sample per emission band, for the light at the centres of the excitation bands
-/// or for all of their nanometres.
-Exitance exitance_of(const ReradiationMatrix& matrix, const Viewing& viewing, bool at_nanometres);
+/// The wavelengths that a colour is summed over.
+enum class SumRange {
+    Bands,       ///< centres of the bands
+    WithinBands, ///< every nanometre within the bands
+    E308,        ///< every nanometre from 360 to 780 nm
+};
 
-Sums sum_over_bands(const WavelengthGrid& bands, const Exitance& exitance, const Viewing& viewing);
-/// Sums over 1 nm from 360 to 780 nm.
-Sums sum_as_e308(const WavelengthGrid& bands, const Exitance& exitance, const Viewing& viewing);
-/// Sums over 1 nm within the bands.
-Sums sum_within_bands(const WavelengthGrid& bands, const Exitance& exitance,
-                      const Viewing& viewing);
+/// The range that ColourSum stands for, where it is decided whether nanometres are summed.
+SumRange sum_range(const WavelengthGrid& bands, ColourSum sum, bool at_nanometres);
+
+/// The sums of a colour as they depend on the lamp, the observer and the grids: linear in the
+/// matrix, so that many matrices on the same grids share them.
+class BandSums {
+public:
+    BandSums(const WavelengthGrid& emission, const WavelengthGrid& excitation,
+             const Viewing& viewing, SumRange range);
+
+    /// What leaves a matrix on these grids. Light counts at the centres of the excitation bands, or
+    /// in all of their nanometres where the sum is over nanometres.
+    Exitance exitance_of(const ReradiationMatrix& matrix) const;
+    Sums sums_of(const Exitance& exitance) const;
+
+    const Eigen::VectorXd& irradiance() const { return irradiance_; }
+    /// What reflectance and re-radiated light count by, (XYZ, emission bands).
+    const Eigen::Matrix3Xd& reflected() const { return reflected_; }
+    const Eigen::Matrix3Xd& luminescent() const { return luminescent_; }
+    const Xyz& white() const { return white_; }
+
+private:
+    void add_bands(const WavelengthGrid& bands, const Viewing& viewing);
+    void add_nanometres(const WavelengthGrid& bands, const Viewing& viewing, double from_nm,
+                        double to_nm);
+
+    Eigen::VectorXd irradiance_;
+    Eigen::Matrix3Xd reflected_, luminescent_;
+    Xyz white_{};
+};
+
 /// The standard carries the last values on, which it allows from 400 and to 700 nm.
 bool reaches_far_enough(const WavelengthGrid& bands);
 

@@ -1,6 +1,9 @@
 #include "host/spectral/colour/colour_report.h"
 
+#include "host/spectral/evidence/scatter_warnings.h"
+
 #include <cmath>
+#include <utility>
 
 namespace reradiant {
 
@@ -62,23 +65,37 @@ std::size_t ColourReport::brightest_band() const {
     return best;
 }
 
+ColourReporter::ColourReporter(Lamp lamp, ColourSum sum, Observer observer)
+    : lamp_(std::move(lamp)), observer_(observer),
+      whole_(lamp_.light, sum, {.observer = observer, .weighted_by = lamp_.weighted_by}),
+      uv_excluded_(lamp_.light, sum,
+                   {.observer = observer,
+                    .weighted_by = lamp_.weighted_by,
+                    .excites_from_nm = uv_excluded_from_nm}),
+      ultraviolet_share_(ultraviolet_share(lamp_.light)),
+      faint_white_(faint_white_warning(lamp_, observer)) {}
+
+ColourReport ColourReporter::report_of(const ReradiationMatrix& matrix,
+                                       std::vector<std::string> scatter) {
+    ColourReport report;
+    static_cast<IndexedColour&>(report) = indexed(whole_.colour_of(matrix), lamp_.name, observer_);
+    // Summed as the whole is, so that the difference is the fluorescence alone.
+    report.uv_excluded =
+        indexed(uv_excluded_.colour_of(matrix, report.colour.at_nanometres), lamp_.name, observer_);
+    report.illuminant = lamp_.name;
+    report.observer = observer_;
+    report.ultraviolet_share = ultraviolet_share_;
+    report.warnings = std::move(scatter);
+    for (std::string& warning : lamp_warnings(matrix, lamp_, observer_))
+        report.warnings.push_back(std::move(warning));
+    if (!faint_white_.empty())
+        report.warnings.push_back(faint_white_);
+    return report;
+}
+
 ColourReport colour_report(const ReradiationMatrix& matrix, const Lamp& lamp, ColourSum sum,
                            Observer observer) {
-    ColourConditions conditions{.observer = observer, .weighted_by = lamp.weighted_by};
-    ColourReport report;
-    static_cast<IndexedColour&>(report) =
-        indexed(colour_of_matrix(matrix, lamp.light, sum, conditions), lamp.name, observer);
-    conditions.excites_from_nm = uv_excluded_from_nm;
-    // Summed as the whole is, so that the difference is the fluorescence alone.
-    const ColourSum same =
-        sum == ColourSum::Automatic && !report.colour.at_nanometres ? ColourSum::Bands : sum;
-    report.uv_excluded =
-        indexed(colour_of_matrix(matrix, lamp.light, same, conditions), lamp.name, observer);
-    report.illuminant = lamp.name;
-    report.observer = observer;
-    report.ultraviolet_share = ultraviolet_share(lamp.light);
-    report.warnings = colour_warnings(matrix, lamp.light, lamp.name, observer, lamp.cut_below_nm);
-    return report;
+    return ColourReporter(lamp, sum, observer).report_of(matrix, scatter_warnings(matrix));
 }
 
 void compare_with(ColourReport& report, const ColourReport& reference) {

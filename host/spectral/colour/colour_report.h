@@ -3,6 +3,7 @@
 #include "host/spectral/colour/colour_indices.h"
 #include "host/spectral/colour/colour_polygons.h"
 #include "host/spectral/colour/lamp.h"
+#include "host/spectral/colour/lamp_colours.h"
 #include "reradiant/colour_of_matrix.h"
 
 #include <nlohmann/json.hpp>
@@ -46,7 +47,27 @@ struct ColourReport : IndexedColour {
 /// The filter that paper laboratories exclude ultraviolet light with.
 inline constexpr double uv_excluded_from_nm = 420.0;
 
-/// Colour, indices and warnings. std::invalid_argument as colour_of_matrix.
+/// A `ColourReporter` reports any number of matrices under one lamp, for one observer. What it
+/// sums for one it keeps for the next.
+class ColourReporter {
+public:
+    ColourReporter(Lamp lamp, ColourSum sum, Observer observer);
+
+    const Lamp& lamp() const { return lamp_; }
+    Observer observer() const { return observer_; }
+    /// Colour, indices and warnings, those of `scatter` (scatter_warnings of the matrix) first.
+    /// std::invalid_argument as colour_of_matrix.
+    ColourReport report_of(const ReradiationMatrix& matrix, std::vector<std::string> scatter);
+
+private:
+    Lamp lamp_;
+    Observer observer_;
+    LampColours whole_, uv_excluded_;
+    double ultraviolet_share_;
+    std::string faint_white_; ///< a warning, or empty
+};
+
+/// The report of one matrix.
 ColourReport colour_report(const ReradiationMatrix& matrix, const Lamp& lamp, ColourSum sum,
                            Observer observer = Observer::Cie1931Deg2);
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include "reradiant/colour_of_matrix.h"
 #include "reradiant/spectrum.h"
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace reradiant {
 
@@ -47,6 +49,15 @@ Lamp without_ultraviolet(const Lamp& lamp, double nm);
 /// xyz_of: CIE 15:2018, equations 4.7 to 4.12, with M1 and M2 rounded to three decimals as it asks.
 /// Dark outside 300-830 nm. std::invalid_argument beyond these temperatures.
 Spectrum cie_daylight(double kelvin);
+
+/// A sentence where the observer sees almost nothing of the light of a lamp that colours are
+/// relative to, as of `L:365` alone: the fluorescence that it excites is then many times as bright
+/// as its white. Empty where it is seen.
+std::string faint_white_warning(const Lamp& lamp, Observer observer);
+
+/// What colour_warnings says of a matrix under a lamp: not of scatter, which any lamp shows.
+std::vector<std::string> lamp_warnings(const ReradiationMatrix& matrix, const Lamp& lamp,
+                                       Observer observer);
 
 /// The share of a lamp's irradiance that lies below 400 nm, of that from 300 to 830 nm; NaN for a
 /// lamp without light there.

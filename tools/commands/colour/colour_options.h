@@ -12,8 +12,11 @@ namespace reradiant {
 
 /// The command line of `colour`.
 struct ColourOptions {
-    std::filesystem::path matrix, against, polygons, plot; ///< `matrix` may be a material
-    std::string preset, geometry;                          ///< may be empty
+    /// Matrices, materials, measurements of `measure`.
+    std::vector<std::filesystem::path> samples;
+    std::vector<std::string> presets; ///< further samples, by name
+    std::filesystem::path against, polygons, plot, csv, report;
+    std::string geometry; ///< may be empty
     std::vector<std::string> illuminants;
     std::vector<std::filesystem::path> lamp_files;
     std::vector<std::string> observer_names{"1931-2"};
@@ -22,6 +25,7 @@ struct ColourOptions {
     std::vector<Observer> observers;
     bool e308 = false, plain = false, table = false;
 
+    std::size_t sample_count() const { return samples.size() + presets.size(); }
     ColourSum sum() const {
         if (e308)
             return ColourSum::E308;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace reradiant {
 
 namespace {
@@ -62,12 +64,6 @@ void print_differences(const ColourReport& report, const std::string& from) {
 
 } // namespace
 
-std::string key_of(const ColourReport& report, const ColourOptions& options) {
-    if (options.observers.size() == 1)
-        return report.illuminant;
-    return report.illuminant + "/" + observer_name(report.observer);
-}
-
 void print_colour(const ColourReport& report, const ColourOptions& options) {
     const MatrixColour& colour = report.colour;
     const std::size_t brightest = report.brightest_band();
@@ -81,8 +77,9 @@ void print_colour(const ColourReport& report, const ColourOptions& options) {
     fmt::print("  luminance factor {:.4f} = {:.4f} reflected + {:.4f} re-radiated\n",
                colour.xyz[1] / 100.0, colour.luminance_reflected / 100.0,
                (colour.xyz[1] - colour.luminance_reflected) / 100.0);
-    fmt::print("  largest total radiance factor {:.4f} at {:.6g} nm\n", colour.total[brightest],
-               colour.nm[brightest]);
+    if (std::isfinite(colour.total[brightest]))
+        fmt::print("  largest total radiance factor {:.4f} at {:.6g} nm\n", colour.total[brightest],
+                   colour.nm[brightest]);
     print_indices(report);
     print_without_ultraviolet(report);
     print_differences(report, options.against.string());
