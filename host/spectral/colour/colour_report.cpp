@@ -1,5 +1,7 @@
 #include "host/spectral/colour/colour_report.h"
 
+#include "host/spectral/colour/colour_intervals.h"
+
 #include <cmath>
 #include <utility>
 
@@ -124,6 +126,8 @@ nlohmann::ordered_json colour_report_json(const ColourReport& report) {
         json["metamerism"] = *report.metamerism;
     if (!report.polygons.empty())
         json["polygons"] = polygons_json(report.polygons);
+    if (report.intervals)
+        json["intervals"] = intervals_json(*report.intervals);
     json.update({{"nm", colour.nm},
                  {"beta_T", colour.total},
                  {"beta_R", colour.reflected},
