@@ -175,6 +175,7 @@ ReradiationMatrix geometry_matrix(const Material& material, const ViewingGeometr
     ReradiationMatrix matrix;
     matrix.emission = matrix.excitation = bands;
     matrix.values = std::move(values);
+    matrix.geometry = geometry.name;
     return matrix;
 }
 

@@ -5,8 +5,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace reradiant::svg {
 
@@ -39,7 +41,7 @@ std::string path_of(const Frame& frame, const std::vector<Chromaticity>& corners
 /// Wavelengths that are written at the locus: where they lie apart.
 bool is_labelled(double nm) {
     const double tens = std::remainder(nm, 20.0);
-    return std::abs(tens) < 1e-9 && ((nm >= 460.0 && nm <= 620.0) || nm == 700.0 || nm == 400.0);
+    return std::abs(tens) < 1e-9 && ((nm >= 460.0 && nm <= 620.0) || nm == 700.0);
 }
 
 std::string draw_locus(const Frame& frame, const ChromaticityDiagram& diagram) {
@@ -60,18 +62,62 @@ std::string draw_locus(const Frame& frame, const ChromaticityDiagram& diagram) {
     return text;
 }
 
-std::string draw_regions(const Frame& frame, const std::vector<ChromaticityRegion>& regions) {
+Chromaticity middle_of(const std::vector<Chromaticity>& corners) {
+    Chromaticity middle{};
+    for (const Chromaticity& xy : corners)
+        for (std::size_t c = 0; c < 2; ++c)
+            middle[c] += xy[c] / static_cast<double>(corners.size());
+    return middle;
+}
+
+/// True where a ray from the point towards +x crosses the outline an odd number of times.
+bool is_inside(const Chromaticity& xy, const std::vector<Chromaticity>& outline) {
+    bool inside = false;
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+        const Chromaticity &a = outline[k], &b = outline[(k + 1) % outline.size()];
+        if ((a[1] > xy[1]) != (b[1] > xy[1]) &&
+            xy[0] < a[0] + (xy[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+            inside = !inside;
+    }
+    return inside;
+}
+
+/// Goes on from a region, away from the middle of the diagram, to where no colours are.
+Chromaticity beyond_locus(Chromaticity xy, const std::vector<Chromaticity>& locus) {
+    constexpr double step = 0.01, clearance = 0.03;
+    const Chromaticity away{xy[0] - 1.0 / 3.0, xy[1] - 1.0 / 3.0};
+    const double length = std::max(1e-6, std::hypot(away[0], away[1]));
+    const auto go = [&](double distance) {
+        for (std::size_t c = 0; c < 2; ++c)
+            xy[c] += distance * away[c] / length;
+    };
+    for (int k = 0; k < 100 && is_inside(xy, locus); ++k)
+        go(step);
+    go(clearance);
+    return xy;
+}
+
+std::string draw_regions(const Frame& frame, const ChromaticityDiagram& diagram) {
     std::string text;
-    for (const ChromaticityRegion& region : regions) {
-        Chromaticity centre{};
-        for (const Chromaticity& xy : region.corners)
-            for (std::size_t c = 0; c < 2; ++c)
-                centre[c] += xy[c] / static_cast<double>(region.corners.size());
+    double lowest = frame.top; // names of regions stand below each other
+    std::vector<std::pair<Chromaticity, const ChromaticityRegion*>> names;
+    for (const ChromaticityRegion& region : diagram.regions)
+        names.emplace_back(beyond_locus(middle_of(region.corners), diagram.locus), &region);
+    std::sort(names.begin(), names.end(),
+              [](const auto& a, const auto& b) { return a.first[1] > b.first[1]; });
+    for (const auto& [place, region] : names) {
+        const Chromaticity middle = middle_of(region->corners);
+        const double y = std::max(lowest + 14, frame.y_of(place[1]));
+        double x = frame.x_of(place[0]);
+        if (x + 7.0 * static_cast<double>(region->name.size()) > frame.right())
+            x = frame.right() + 14; // the border would cross the name
         text += fmt::format("<path d=\"{}\" fill=\"#888\" fill-opacity=\"0.18\" stroke=\"#666\" "
-                            "stroke-dasharray=\"4 2\"><title>{}</title></path>\n",
-                            path_of(frame, region.corners), markup_escaped(region.name));
-        text +=
-            text_at(frame.x_of(centre[0]), frame.y_of(centre[1]) + 4, "middle", region.name, 10);
+                            "stroke-dasharray=\"4 2\"/>\n",
+                            path_of(frame, region->corners));
+        text += fmt::format("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"#999\"/>\n",
+                            frame.x_of(middle[0]), frame.y_of(middle[1]), x, y);
+        text += text_at(x + 4, y + 4, "start", region->name, 11);
+        lowest = y;
     }
     return text;
 }
@@ -135,6 +181,8 @@ double legend_width(const ChromaticityDiagram& diagram) {
     std::size_t longest = 20;
     for (const std::string& name : diagram.series)
         longest = std::max(longest, name.size());
+    for (const ChromaticityRegion& region : diagram.regions)
+        longest = std::max(longest, region.name.size());
     return 40.0 + 7.0 * static_cast<double>(longest);
 }
 
@@ -145,7 +193,7 @@ std::string chromaticity_diagram(const ChromaticityDiagram& diagram) {
     const Frame frame = frame_of_diagram();
     std::string content = draw_frame(frame, diagram.title, diagram.x_label, diagram.y_label, true);
     content += draw_locus(frame, diagram);
-    content += draw_regions(frame, diagram.regions);
+    content += draw_regions(frame, diagram);
     for (std::size_t k = 0; k < diagram.whites.size(); ++k)
         content += draw_white(frame, diagram.whites[k], k);
     for (const ChromaticityPoint& point : diagram.points)

@@ -2,11 +2,15 @@
 
 #include "reradiant/measure.h"
 #include "reradiant/scene_file.h"
+#include "tests/measure/smooth_slabs.h"
+#include "tests/support/full_run.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 
@@ -62,6 +66,74 @@ Eigen::MatrixXd by_quadrature(const Material& material) {
     return sum;
 }
 
+/// Three bands, of which the first excites both others and the second the third.
+Material over_stokes_shift(const LayerStack& stack) {
+    Material material;
+    material.stack = stack;
+    const Eigen::MatrixXd values = test::stokes_matrix();
+    material.substrate.reflectance =
+        Spectrum::table({400.0, 500.0, 600.0}, {values(0, 0), values(1, 1), values(2, 2)});
+    ReradiationMatrix matrix;
+    matrix.emission = matrix.excitation = test::grid;
+    matrix.values = values;
+    material.substrate.matrix = std::make_shared<const ReradiationMatrix>(std::move(matrix));
+    return material;
+}
+
+double largest_error(const Eigen::MatrixXd& seen, const Eigen::MatrixXd& expected) {
+    return (seen - expected).cwiseAbs().maxCoeff();
+}
+
+LayerStack rough_coat(double alpha, Distribution distribution, double ior) {
+    LayerStack stack = test::stack_of({{1.0, ior}, {0.0, 0.1}});
+    stack.layers[0].alpha = alpha;
+    stack.layers[0].distribution = distribution;
+    return stack;
+}
+
+/// Sums of what a walk with one seed reflects and re-radiates in a geometry, in its bands' order:
+/// reflected, re-radiated.
+std::array<double, 2> walked_sums(const Material& material, const ViewingGeometry& geometry,
+                                  long samples, unsigned seed) {
+    MeasureRequest request;
+    request.model = Model::Walk;
+    request.theta_i_deg = {geometry.theta_i_deg};
+    request.theta_o_deg = {geometry.theta_o_deg};
+    request.phi_deg = {geometry.phi_deg};
+    request.hemispherical = geometry.kind != ViewingGeometry::Kind::Directional;
+    request.samples = samples;
+    request.seed = seed;
+    std::array<double, 2> sums{};
+    for (const MeasureRow& row : measure_material(material, request).rows)
+        sums[row.lambda_i_nm == row.lambda_o_nm ? 0 : 1] += row.value;
+    for (double& sum : sums)
+        sum *= request.hemispherical ? 1.0 : std::numbers::pi;
+    return sums;
+}
+
+/// The walk's mean over seeds is within three of its standard errors of the closed model's sums.
+void expect_walk_agrees(const Material& material, const std::string& name, long samples) {
+    constexpr unsigned seeds = 16;
+    const ViewingGeometry geometry = viewing_geometry(name);
+    const Eigen::MatrixXd closed = geometry_matrix(material, geometry).values;
+    const std::array<double, 2> expected{closed.trace(), closed.sum() - closed.trace()};
+    std::array<double, 2> mean{}, square{};
+    for (unsigned seed = 0; seed < seeds; ++seed) {
+        const std::array<double, 2> seen = walked_sums(material, geometry, samples, seed);
+        for (std::size_t k = 0; k < 2; ++k) {
+            mean[k] += seen[k] / seeds;
+            square[k] += seen[k] * seen[k] / seeds;
+        }
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double error = std::sqrt((square[k] - mean[k] * mean[k]) / (seeds - 1));
+        EXPECT_LT(std::abs(mean[k] - expected[k]), 3.0 * error)
+            << name << (k == 0 ? ", reflected " : ", re-radiated ") << mean[k] << " +- " << error
+            << ", closed " << expected[k];
+        EXPECT_LT(error, 0.02 * expected[k]) << "too noisy to tell anything";
+    }
+}
+
 } // namespace
 
 TEST(GeometryMatrix, NamesAreRead) {
@@ -72,6 +144,18 @@ TEST(GeometryMatrix, NamesAreRead) {
     for (const char* text : {"", "45", "45/8", "90:0", "0:90", "-1:0", "1:2:3:4", "a:b",
                              "45:", ":0", "nan:0", "45:0:x"})
         EXPECT_THROW(viewing_geometry(text), std::invalid_argument) << text;
+    const auto refusal = [](const std::string& text) -> std::string {
+        try {
+            viewing_geometry(text);
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_NE(refusal("45/8").find("8/de"), std::string::npos) << "lists those that there are";
+    EXPECT_NE(refusal("95:0").find("below the horizon"), std::string::npos) << refusal("95:0");
+    EXPECT_NE(refusal("20:-5").find("negative"), std::string::npos) << refusal("20:-5");
+    EXPECT_NE(refusal("0:180").find("transmit nothing"), std::string::npos) << refusal("0:180");
 }
 
 TEST(GeometryMatrix, BareMaterialIsItsMatrixInEveryGeometry) {
@@ -124,6 +208,39 @@ TEST(GeometryMatrix, ThePortTakesAwayWhatTheLobePutsThere) {
     EXPECT_GT(excluded(rough)(20, 20), 0.0);
     EXPECT_LT(excluded(rough)(20, 20), excluded(smooth)(20, 20));
     EXPECT_TRUE(excluded(rough).isDiagonal(1e-12));
+}
+
+// Light goes in through the stack, is shared out by the substrate and the stack above it in every
+// order of interreflection, and goes out through the stack.
+TEST(GeometryMatrix, SmoothStacksAgreeWithTheClosedForm) {
+    for (const test::SmoothSlabs& slabs : {test::SmoothSlabs{{1.0}, {0.0}},
+                                           {{1.0, 1.5}, {0.0, 0.0}},
+                                           {{1.0, 1.5}, {0.0, 0.3}},
+                                           {{1.0, 1.3, 1.6}, {0.0, 0.0, 0.2}},
+                                           {{1.0, 1.6, 1.3}, {0.0, 0.1, 0.2}}}) {
+        const Material material = over_stokes_shift(test::stack_of(slabs));
+        const Eigen::MatrixXd centre =
+            test::interreflected(test::stokes_matrix(), slabs.internal());
+        const double n2 = slabs.ior.back() * slabs.ior.back();
+        const Eigen::MatrixXd directional =
+            slabs.transmission(45.0) * slabs.transmission(0.0) / n2 * centre;
+        EXPECT_LT(largest_error(factors(material, "45/0"), directional), 1e-6);
+        EXPECT_LT(largest_error(factors(material, "0/45"), directional), 1e-6);
+        const Eigen::MatrixXd diffuse = slabs.transmission(8.0) * slabs.external() * centre;
+        EXPECT_LT(largest_error(factors(material, "8/de"), diffuse), 1e-6);
+        EXPECT_LT(largest_error(factors(material, "de/8"), diffuse), 1e-6);
+        const Eigen::MatrixXd all = diffuse + slabs.specular(8.0) * Eigen::MatrixXd::Identity(3, 3);
+        EXPECT_LT(largest_error(factors(material, "8/d"), all), 1e-6);
+        EXPECT_LT(largest_error(factors(material, "d/8"), all), 1e-6);
+    }
+}
+
+TEST(GeometryMatrix, RoughStacksAgreeWithTheWalk) {
+    const long samples = 1L << (test::is_full_run() ? 15U : 11U);
+    for (const LayerStack& stack :
+         {rough_coat(0.1, Distribution::Ggx, 1.5), rough_coat(0.3, Distribution::Beckmann, 1.7)})
+        for (const char* geometry : {"45/0", "8/d", "30:60:120"})
+            expect_walk_agrees(over_stokes_shift(stack), geometry, samples);
 }
 
 // Nothing is absorbed, so that all light comes back; the interreflections are summed in closed

@@ -1,5 +1,6 @@
 #include "host/spectral/colour/colour_indices.h"
 
+#include "host/spectral/colour/colour_report.h"
 #include "host/spectral/colour/lamp.h"
 #include "host/spectral/text/number_table.h"
 #include "reradiant/paths.h"
@@ -165,6 +166,48 @@ TEST(ColourIndices, AFlatWhiteIsWhiteUnderAnyLampForAnyObserver) {
             EXPECT_NEAR(colour.lab[2], 0.0, 1e-9) << lamp << ' ' << eye;
             EXPECT_NEAR(r457(colour).value_or(86.0), 86.0, 1e-9) << lamp;
         }
+}
+
+TEST(ColourIndices, APerfectWhiteIsLab100UnderAnyLampForAnyObserver) {
+    ReradiationMatrix white = brightened_paper(0.0);
+    white.values.setIdentity(49, 49);
+    for (const char* lamp : {"A", "D65", "C", "E", "FL2", "FL11", "HP1", "LED-V2", "ID65", "P:2000",
+                             "D:25000", "L:550", "D65+20*L:365", "M0", "M1", "M2"})
+        for (const char* eye : {"1931-2", "1964-10", "2015-2", "2015-10"})
+            for (const ColourSum sum : {ColourSum::Automatic, ColourSum::Bands, ColourSum::E308}) {
+                const ColourReport report =
+                    colour_report(white, lamp_from_text(lamp), sum, observer_named(eye));
+                EXPECT_NEAR(report.colour.lab[0], 100.0, 1e-9) << lamp << ' ' << eye;
+                EXPECT_NEAR(report.colour.lab[1], 0.0, 1e-9) << lamp << ' ' << eye;
+                EXPECT_NEAR(report.colour.lab[2], 0.0, 1e-9) << lamp << ' ' << eye;
+                // The perfect diffuser has whiteness 100 and tint 0 by definition.
+                if (report.whiteness) {
+                    EXPECT_NEAR(report.whiteness->whiteness, 100.0, 1e-9);
+                    EXPECT_NEAR(report.whiteness->tint, 0.0, 1e-9);
+                }
+                // The coefficients of E313 make its yellowness 0 for whites of 5 nm sums; those of
+                // 10 nm sums have 0.1 % more or less of Z.
+                if (report.e313) {
+                    EXPECT_NEAR(report.e313->yellowness, 0.0, 0.15) << lamp << ' ' << eye;
+                }
+            }
+}
+
+// CIE 15, 9.1: W is Y + 800 (xn - x) + 1700 (yn - y), tint 1000 (900 for 10 degrees) (xn - x) - 650
+// (yn - y). By hand for a bluish white of x = 0.3027, y = 0.3190, Y = 92 under xn = 0.3127, yn =
+// 0.3290: 92 + 8 + 17 = 117, and 10 - 6.5 = 3.5 or 9 - 6.5 = 2.5.
+TEST(ColourIndices, WhitenessByHand) {
+    const auto xyz = [](double x, double y, double luminance) {
+        return Xyz{x / y * luminance, luminance, (1.0 - x - y) / y * luminance};
+    };
+    const Xyz white = xyz(0.3127, 0.3290, 100.0), bluish = xyz(0.3027, 0.3190, 92.0);
+    const Whiteness of_2 = cie_whiteness(bluish, white, Observer::Cie1931Deg2),
+                    of_10 = cie_whiteness(bluish, white, Observer::Cie1964Deg10);
+    EXPECT_NEAR(of_2.whiteness, 117.0, 1e-9);
+    EXPECT_NEAR(of_10.whiteness, 117.0, 1e-9);
+    EXPECT_NEAR(of_2.tint, 3.5, 1e-9);
+    EXPECT_NEAR(of_10.tint, 2.5, 1e-9);
+    EXPECT_FALSE(of_2.within_limits) << "a tint of 2 is the limit";
 }
 
 // Without what ultraviolet light excites the paper is its grey, and so it is under a lamp that has

@@ -1,4 +1,4 @@
-// The pages of `study` and `converge` in headless Chromium, used as a reader uses them.
+// The pages of `study`, `converge` and `colour` in headless Chromium, used as a reader uses them.
 #include "tests/tools/program_runner.h"
 
 #include <nlohmann/json.hpp>
@@ -146,6 +146,37 @@ TEST_F(PagesInBrowser, ConvergeShowsCurvesAndErrorImages) {
     EXPECT_GE(outcome.at("error_images"), 2);
     EXPECT_GE(outcome.at("plots"), 2);
     EXPECT_NE(outcome.at("text").get<std::string>().find("hero:4"), std::string::npos);
+}
+
+// Nothing reaches beyond the page, whose tables scroll where they are too wide.
+TEST_F(PagesInBrowser, ColoursFitTheirPage) {
+    const std::string spectra = RERADIANT_SOURCE_DIR "/spectra/";
+    ASSERT_EQ(run("colour " + spectra + "reradiation/neon-orange.csv " + spectra +
+                  "reradiation/neon-yellow.csv --preset neon-orange-varnished --illuminant "
+                  "D65,C,A --observer 1931-2,1964-10 --against " +
+                  spectra + "reradiation/neon-orange-fitted.csv --polygons " + spectra +
+                  "polygons/en-iso-20471.csv --report colours.html --quiet")
+                  .exit_code,
+              3);
+    const nlohmann::json outcome = opened("colours.html", R"js(
+  const all = (selector) => [...document.querySelectorAll(selector)];
+  outcome.tables = all('table').length;
+  outcome.figures = all('figure svg').length;
+  outcome.too_wide = document.documentElement.scrollWidth - innerWidth;
+  outcome.swatches = all('figure')[0].querySelectorAll('rect > title').length;
+  outcome.cut_off = all('figure svg text').filter((text) => {
+    const box = text.getBoundingClientRect();
+    const page = text.ownerSVGElement.getBoundingClientRect();
+    return box.left < page.left - 1 || box.right > page.right + 1 || box.top < page.top - 1 ||
+      box.bottom > page.bottom + 1;
+  }).map((text) => text.textContent);
+)js");
+    expect_sound(outcome, 0);
+    EXPECT_EQ(outcome.at("tables"), 7);
+    EXPECT_EQ(outcome.at("figures"), 2 + 2 + 3);
+    EXPECT_LE(outcome.at("too_wide"), 0);
+    EXPECT_EQ(outcome.at("swatches"), 3 * 3 * 2);
+    EXPECT_EQ(outcome.at("cut_off"), nlohmann::json::array());
 }
 
 } // namespace reradiant

@@ -143,6 +143,29 @@ std::optional<Measurement> measure_file(const MeasureOptions& options,
     }
 }
 
+std::string counted(std::size_t count, const char* one, const char* several) {
+    return fmt::format("{} {}", count, count == 1 ? one : several);
+}
+
+/// What was made, and where: one line.
+std::string summary(const MeasureOptions& options, const MeasureRequest& request,
+                    const Measurement& measurement) {
+    const std::size_t incidences = request.theta_i_deg.size();
+    const std::string directions =
+        measurement.hemispherical
+            ? counted(incidences, "incidence", "incidences")
+            : counted(incidences * request.theta_o_deg.size() * request.phi_deg.size(),
+                      "pair of directions", "pairs of directions");
+    const WavelengthGrid& bands = measurement.bands;
+    return fmt::format(
+        "{}: {} of {}, {}, {} from {:.6g} to {:.6g} nm, {}, model {}", options.output.string(),
+        measurement.hemispherical ? "directional-hemispherical reflectance" : "bispectral BRDF",
+        material_file(options).filename().string(), directions,
+        counted(static_cast<std::size_t>(bands.count), "band", "bands"), bands.from_nm,
+        bands.to_nm(), counted(measurement.rows.size(), "row", "rows"),
+        model_name(measurement.model));
+}
+
 int run_measure(const MeasureOptions& options, const CommonOptions& common) {
     MeasureRequest request;
     request.theta_i_deg = options.theta_i;
@@ -176,8 +199,7 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
                                {"step_nm", measurement.bands.step_nm}}},
                              {"notes", measurement.notes}});
     if (!common.quiet) {
-        fmt::print("{}: {} rows, model {}\n", options.output.string(), measurement.rows.size(),
-                   model_name(measurement.model));
+        fmt::print("{}\n", summary(options, request, measurement));
         for (const std::string& note : measurement.notes)
             fmt::print("{}\n", note);
     }

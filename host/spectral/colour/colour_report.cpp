@@ -1,6 +1,7 @@
 #include "host/spectral/colour/colour_report.h"
 
 #include "host/spectral/colour/colour_intervals.h"
+#include "host/spectral/evidence/scatter_warnings.h"
 
 #include <cmath>
 #include <utility>
@@ -75,7 +76,8 @@ ColourReporter::ColourReporter(Lamp lamp, ColourSum sum, Observer observer)
       ultraviolet_share_(ultraviolet_share(lamp_.light)),
       faint_white_(faint_white_warning(lamp_, observer)) {}
 
-ColourReport ColourReporter::report_of(const ReradiationMatrix& matrix) {
+ColourReport ColourReporter::report_of(const ReradiationMatrix& matrix,
+                                       std::vector<std::string> scatter) {
     ColourReport report;
     static_cast<IndexedColour&>(report) = indexed(whole_.colour_of(matrix), lamp_.name, observer_);
     // Summed as the whole is, so that the difference is the fluorescence alone.
@@ -84,8 +86,9 @@ ColourReport ColourReporter::report_of(const ReradiationMatrix& matrix) {
     report.illuminant = lamp_.name;
     report.observer = observer_;
     report.ultraviolet_share = ultraviolet_share_;
-    report.warnings =
-        colour_warnings(matrix, lamp_.light, lamp_.name, observer_, lamp_.cut_below_nm);
+    report.warnings = std::move(scatter);
+    for (std::string& warning : lamp_warnings(matrix, lamp_, observer_))
+        report.warnings.push_back(std::move(warning));
     if (!faint_white_.empty())
         report.warnings.push_back(faint_white_);
     return report;
@@ -93,7 +96,7 @@ ColourReport ColourReporter::report_of(const ReradiationMatrix& matrix) {
 
 ColourReport colour_report(const ReradiationMatrix& matrix, const Lamp& lamp, ColourSum sum,
                            Observer observer) {
-    return ColourReporter(lamp, sum, observer).report_of(matrix);
+    return ColourReporter(lamp, sum, observer).report_of(matrix, scatter_warnings(matrix));
 }
 
 void compare_with(ColourReport& report, const ColourReport& reference) {

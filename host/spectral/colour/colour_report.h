@@ -70,8 +70,9 @@ public:
 
     const Lamp& lamp() const { return lamp_; }
     Observer observer() const { return observer_; }
-    /// Colour, indices and warnings. std::invalid_argument as colour_of_matrix.
-    ColourReport report_of(const ReradiationMatrix& matrix);
+    /// Colour, indices and warnings, those of `scatter` (scatter_warnings of the matrix) first.
+    /// std::invalid_argument as colour_of_matrix.
+    ColourReport report_of(const ReradiationMatrix& matrix, std::vector<std::string> scatter);
 
 private:
     Lamp lamp_;

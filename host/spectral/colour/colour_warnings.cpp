@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace reradiant {
 
@@ -99,7 +100,19 @@ std::vector<std::string> colour_warnings(const ReradiationMatrix& matrix,
                                          const Spectrum& illuminant, const std::string& name,
                                          Observer observer, double dark_on_purpose_below_nm) {
     std::vector<std::string> warnings = scatter_warnings(matrix);
-    add_dark_ends(warnings, matrix, illuminant, name, dark_on_purpose_below_nm);
+    for (std::string& warning : lamp_warnings(
+             matrix, {.name = name, .light = illuminant, .cut_below_nm = dark_on_purpose_below_nm},
+             observer))
+        warnings.push_back(std::move(warning));
+    return warnings;
+}
+
+std::vector<std::string> lamp_warnings(const ReradiationMatrix& matrix, const Lamp& lamp,
+                                       Observer observer) {
+    const Spectrum& illuminant = lamp.light;
+    const std::string& name = lamp.name;
+    std::vector<std::string> warnings;
+    add_dark_ends(warnings, matrix, illuminant, name, lamp.cut_below_nm);
     if (const std::string unknown = unknown_reflectance(matrix); !unknown.empty())
         warnings.push_back(unknown);
     if (reaches_far_enough(matrix.emission))

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace reradiant {
 
@@ -53,6 +54,10 @@ Spectrum cie_daylight(double kelvin);
 /// relative to, as of `L:365` alone: the fluorescence that it excites is then many times as bright
 /// as its white. Empty where it is seen.
 std::string faint_white_warning(const Lamp& lamp, Observer observer);
+
+/// What colour_warnings says of a matrix under a lamp: not of scatter, which any lamp shows.
+std::vector<std::string> lamp_warnings(const ReradiationMatrix& matrix, const Lamp& lamp,
+                                       Observer observer);
 
 /// The share of a lamp's irradiance that lies below 400 nm, of that from 300 to 830 nm; NaN for a
 /// lamp without light there.

@@ -19,9 +19,12 @@ namespace {
 
 using svg::Chromaticity;
 
+/// More numbers would hide the dots.
+constexpr std::size_t most_numbered = 30;
+
 std::string title_of(const std::vector<SeenSample>& samples) {
     if (samples.size() == 1)
-        return "Colour of " + samples.front().sample.name;
+        return "Colour of " + samples.front().sample.short_name;
     return fmt::format("Colours of {} samples", samples.size());
 }
 
@@ -34,23 +37,8 @@ Chromaticity chromaticity(const Xyz& xyz) {
     return {xyz[0] / sum, xyz[1] / sum};
 }
 
-/// What was asked for.
-void add_request(HtmlPage& page, const std::vector<SeenSample>& samples,
-                 const ColourOptions& options) {
-    std::string geometries;
-    std::set<std::string> known;
-    for (const SeenSample& sample : samples) {
-        const std::string& geometry = sample.sample.matrix.geometry;
-        if (!geometry.empty() && known.insert(geometry).second)
-            geometries += (geometries.empty() ? "" : ", ") + geometry;
-    }
-    page.paragraph(fmt::format(
-        "Radiance factors {}; XYZ of the perfect diffuser have Y = 100; Lab of CIE 1976 relative "
-        "to the lamp's own white.{}",
-        geometries.empty() ? "of the geometry that they were measured in" : "at " + geometries,
-        options.against.empty()
-            ? ""
-            : fmt::format(" Differences are from {}.", options.against.string())));
+std::string without_ultraviolet() {
+    return fmt::format("Without what light below {:g} nm excites:", uv_excluded_from_nm);
 }
 
 void add_swatches(HtmlPage& page, const std::vector<SeenSample>& samples,
@@ -62,21 +50,46 @@ void add_swatches(HtmlPage& page, const std::vector<SeenSample>& samples,
                                 "screen's white.{} A white corner marks a colour that is brighter "
                                 "or more saturated than a screen shows.",
                                 observer_title(observer),
-                                options.against.empty() ? std::string()
-                                                        : fmt::format(" The right half is {}.",
-                                                                      options.against.string())));
+                                options.against.empty()
+                                    ? std::string()
+                                    : fmt::format(" The right half is {}.",
+                                                  options.against.filename().string())));
+}
+
+void add_table(HtmlPage& page, const ColourTable& table) {
+    page.table(table.header, table.rows);
+}
+
+void add_colours(HtmlPage& page, const std::vector<SeenSample>& samples,
+                 const ColourOptions& options) {
+    page.heading("Colours");
+    add_table(page, colour_table(samples, options, false));
+    page.paragraph("The perfect diffuser has Y = 100; Lab is that of CIE 1976 relative to the "
+                   "lamp's own white. A matrix without a geometry is as its instrument measured "
+                   "it.");
+    page.paragraph(without_ultraviolet());
+    add_table(page, colour_table(samples, options, true));
 }
 
 void add_indices(HtmlPage& page, const std::vector<SeenSample>& samples,
                  const ColourOptions& options) {
-    page.heading("Indices");
-    const ColourTable table = short_table(samples, options);
-    page.table(table.header, table.rows);
-    page.paragraph("Whiteness, tint, R457 and the indices of E313 are defined for D65 and C; "
-                   "whiteness and E313 for the observers 1931-2 and 1964-10.");
-    page.heading(fmt::format("Without what light below {:g} nm excites", uv_excluded_from_nm));
-    const ColourTable without = ultraviolet_table(samples, options);
-    page.table(without.header, without.rows);
+    page.heading("Indices of white and yellow");
+    const ColourTable indices = index_table(samples, options, false);
+    if (!indices.rows.empty()) {
+        add_table(page, indices);
+        page.paragraph(without_ultraviolet());
+        add_table(page, index_table(samples, options, true));
+    }
+    page.paragraph("They are defined for D65 and C; whiteness and E313 for the observers 1931-2 "
+                   "and 1964-10.");
+}
+
+void add_differences(HtmlPage& page, const std::vector<SeenSample>& samples,
+                     const ColourOptions& options) {
+    if (options.against.empty())
+        return;
+    page.heading("Differences from " + options.against.filename().string());
+    add_table(page, difference_table(samples, options));
 }
 
 /// Polygons are drawn where they are tested, once each.
@@ -113,6 +126,7 @@ std::string diagram_of(const std::vector<SeenSample>& samples, Observer observer
     svg::ChromaticityDiagram diagram = empty_diagram(observer, options);
     if (observer == Observer::Cie1931Deg2)
         diagram.regions = regions_of(samples);
+    const bool is_numbered = samples.size() > 1 && samples.size() <= most_numbered;
     for (std::size_t k = 0; k < samples.size(); ++k) {
         std::size_t lamp = 0;
         for (const SeenColour& seen : samples[k].colours) {
@@ -121,10 +135,11 @@ std::string diagram_of(const std::vector<SeenSample>& samples, Observer observer
             if (k == 0)
                 diagram.whites.push_back(chromaticity(seen.report.colour.white));
             const Chromaticity xy = seen.report.colour.xy;
-            diagram.points.push_back({fmt::format("{}, {}: {:.4f}, {:.4f}", samples[k].sample.name,
-                                                  seen.report.illuminant, xy[0], xy[1]),
-                                      samples.size() > 1 ? std::to_string(k + 1) : std::string(),
-                                      lamp++, xy, seen.report.uv_excluded.colour.xy});
+            diagram.points.push_back(
+                {fmt::format("{}, {}: {:.4f}, {:.4f}", samples[k].sample.short_name,
+                             seen.report.illuminant, xy[0], xy[1]),
+                 is_numbered && lamp == 0 ? std::to_string(k + 1) : "", lamp++, xy,
+                 seen.report.uv_excluded.colour.xy});
         }
     }
     return svg::chromaticity_diagram(diagram);
@@ -139,7 +154,8 @@ void add_diagrams(HtmlPage& page, const std::vector<SeenSample>& samples,
                                 "same without what light below {:g} nm excites.{}",
                                 uv_excluded_from_nm,
                                 samples.size() > 1
-                                    ? " Numbers count the samples in the order of the tables."
+                                    ? " Numbers count the samples in the order of the tables, at "
+                                      "their dots under the first lamp."
                                     : ""));
     if (options.polygons.empty())
         return;
@@ -147,7 +163,8 @@ void add_diagrams(HtmlPage& page, const std::vector<SeenSample>& samples,
     for (const SeenSample& sample : samples)
         for (const SeenColour& seen : sample.colours)
             for (const PolygonVerdict& verdict : seen.report.polygons)
-                rows.push_back({sample.sample.name, seen.report.illuminant, verdict.polygon.name,
+                rows.push_back({sample.sample.short_name, seen.report.illuminant,
+                                verdict.polygon.name,
                                 verdict.result.chromaticity ? "inside" : "outside",
                                 fmt::format("{:.4f}", seen.report.colour.xyz[1] / 100.0),
                                 fmt::format("{:.4g}", verdict.polygon.minimum_luminance_factor),
@@ -185,7 +202,7 @@ void add_warnings(HtmlPage& page, const std::vector<SeenSample>& samples) {
     std::vector<std::vector<std::string>> rows;
     for (const SeenSample& sample : samples)
         for (const std::string& warning : warnings_of(sample))
-            rows.push_back({sample.sample.name, warning});
+            rows.push_back({sample.sample.short_name, warning});
     if (rows.empty())
         return;
     page.heading("Warnings");
@@ -196,13 +213,14 @@ void add_warnings(HtmlPage& page, const std::vector<SeenSample>& samples) {
 
 std::string colour_page(const std::vector<SeenSample>& samples, const ColourOptions& options) {
     HtmlPage page(title_of(samples));
-    add_request(page, samples, options);
     add_swatches(page, samples, options);
+    add_colours(page, samples, options);
     add_indices(page, samples, options);
+    add_differences(page, samples, options);
     add_diagrams(page, samples, options);
-    add_factors(page, samples, options);
     add_lamps(page, samples);
     add_warnings(page, samples);
+    add_factors(page, samples, options);
     return page.text();
 }
 

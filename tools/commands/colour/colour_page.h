@@ -7,8 +7,8 @@
 
 namespace reradiant {
 
-/// The page of --report: swatches, indices, a chromaticity diagram of each observer, radiance
-/// factors, and what must be known of lamps and samples. One HTML file that fetches nothing.
+/// The page of --report: swatches, colours, indices, a chromaticity diagram of each observer, what
+/// must be known of lamps and samples, radiance factors. One HTML file that fetches nothing.
 std::string colour_page(const std::vector<SeenSample>& samples, const ColourOptions& options);
 
 } // namespace reradiant

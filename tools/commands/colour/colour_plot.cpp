@@ -24,7 +24,7 @@ std::string plot(const std::string& title, const std::vector<svg::Series>& serie
 } // namespace
 
 std::string factors_plot(const SeenSample& sample, const ColourOptions& options) {
-    const std::string name = sample.sample.file.filename().string();
+    const std::string name = sample.sample.short_name;
     const std::string other = options.against.filename().string();
     const bool both = !other.empty();
     const std::size_t lamps = options.lamps.size();
@@ -44,10 +44,10 @@ std::string totals_plot(const std::vector<SeenSample>& samples, const ColourOpti
     };
     for (const SeenSample& sample : samples)
         for (std::size_t k = 0; k < options.lamps.size(); ++k)
-            add(sample.colours[k].report, sample.sample.name);
+            add(sample.colours[k].report, sample.sample.short_name);
     if (!options.against.empty())
         for (std::size_t k = 0; k < options.lamps.size(); ++k)
-            add(*samples.front().colours[k].against, options.against.string());
+            add(*samples.front().colours[k].against, options.against.filename().string());
     const std::string lamp = options.lamps.size() == 1 ? " under " + options.lamps[0].name : "";
     return plot("total radiance factor" + lamp, series);
 }

@@ -99,8 +99,9 @@ void print_colour(const ColourReport& report, const ColourOptions& options) {
     fmt::print("  luminance factor {:.4f} = {:.4f} reflected + {:.4f} re-radiated\n",
                colour.xyz[1] / 100.0, colour.luminance_reflected / 100.0,
                (colour.xyz[1] - colour.luminance_reflected) / 100.0);
-    fmt::print("  largest total radiance factor {:.4f} at {:.6g} nm\n", colour.total[brightest],
-               colour.nm[brightest]);
+    if (std::isfinite(colour.total[brightest]))
+        fmt::print("  largest total radiance factor {:.4f} at {:.6g} nm\n", colour.total[brightest],
+                   colour.nm[brightest]);
     print_indices(report);
     print_intervals(report.intervals);
     print_without_ultraviolet(report);

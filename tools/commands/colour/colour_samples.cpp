@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -82,8 +83,32 @@ ReradiationMatrix declared_matrix(const fs::path& file, const std::string& asked
     return matrix;
 }
 
+/// A lamp behind a blank is taken as a sample.
+void require_file(const fs::path& file) {
+    std::error_code ignored;
+    if (!fs::exists(file, ignored) && !file.has_extension())
+        throw_input_error({file.string()}, "cannot be opened",
+                          "give a file; lamps and observers stand between commas, as in "
+                          "--illuminant D65,A");
+}
+
+/// True for a table that is read as a spectrum and says nothing of re-radiation.
+bool is_spectrum(const fs::path& file) {
+    try {
+        read_spectrum(file);
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 ReradiationMatrix read_matrix(const fs::path& file, const ColourOptions& options) {
+    require_file(file);
     const FileKind kind = file_kind(file);
+    if (kind == FileKind::Spectrum && is_spectrum(file))
+        throw_input_error({file.string()}, "this is a spectrum, not a sample",
+                          "write a material (.toml) with a substrate of this reflectance; a lamp "
+                          "is given by --lamp");
     if (const char* const name = other_kind(kind))
         throw_input_error({file.string()}, fmt::format("this is {}, not a sample", name),
                           samples_are);
@@ -98,12 +123,22 @@ ReradiationMatrix read_matrix(const fs::path& file, const ColourOptions& options
 void require_use_of_geometry(const ColourOptions& options, const std::vector<fs::path>& files) {
     asked_geometry(options);
     if (options.geometry.empty() || std::any_of(files.begin(), files.end(), [](const fs::path& f) {
+            require_file(f);
             return takes_geometry(file_kind(f));
         }))
         return;
     throw_input_error({files.front().string()},
                       "the geometry of a matrix is that of the instrument that measured it",
                       "--geometry is for materials (.toml, --preset) and for files of `measure`");
+}
+
+void shorten_names(std::vector<ColourSample>& samples) {
+    std::map<std::string, int> uses;
+    for (const ColourSample& sample : samples)
+        ++uses[fs::path(sample.name).filename().string()];
+    for (ColourSample& sample : samples)
+        if (std::string name = fs::path(sample.name).filename().string(); uses[name] == 1)
+            sample.short_name = std::move(name);
 }
 
 } // namespace
@@ -131,13 +166,15 @@ std::vector<ColourSample> read_samples(const ColourOptions& options) {
             is_preset ? options.presets[k - options.samples.size()] : options.samples[k].string();
         if (!names.insert(name).second)
             throw_input_error({name}, "the sample is given twice", "name every sample once");
-        samples.push_back({std::move(name), files[k], read_matrix(files[k], options)});
+        samples.push_back({name, name, files[k], read_matrix(files[k], options)});
     }
+    shorten_names(samples);
     return samples;
 }
 
 ColourSample read_reference(const ColourOptions& options) {
-    return {options.against.string(), options.against, read_matrix(options.against, options)};
+    return {options.against.string(), options.against.filename().string(), options.against,
+            read_matrix(options.against, options)};
 }
 
 } // namespace reradiant

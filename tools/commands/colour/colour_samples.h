@@ -11,7 +11,8 @@ namespace reradiant {
 
 /// A `ColourSample` is what a colour is asked of, as radiance factors.
 struct ColourSample {
-    std::string name; ///< the file as it was given, or the preset
+    std::string name;       ///< the file as it was given, or the preset
+    std::string short_name; ///< without the folder, where that is no other sample's
     std::filesystem::path file;
     /// In the geometry that is asked for, or that of the instrument which measured a matrix.
     ReradiationMatrix matrix;

@@ -39,24 +39,25 @@ public:
                             }});
     }
 
-    /// The indices of what `part` takes out of a report.
+    /// The indices of what `part` takes out of a report: whiteness and tint of the CIE, R457,
+    /// whiteness and yellowness of E313.
     template <typename Part>
-    void add_indices(const std::string& prefix, const Part& part) {
+    void add_indices(const std::array<std::string, 5>& names, const Part& part) {
         using Optional = std::optional<double>;
-        add(prefix + "whiteness_cie", [part](const ColourReport& report) {
+        add(names[0], [part](const ColourReport& report) {
             const auto& whiteness = part(report).whiteness;
             return whiteness ? Optional(whiteness->whiteness) : Optional();
         });
-        add(prefix + "tint_cie", [part](const ColourReport& report) {
+        add(names[1], [part](const ColourReport& report) {
             const auto& whiteness = part(report).whiteness;
             return whiteness ? Optional(whiteness->tint) : Optional();
         });
-        add(prefix + "r457", [part](const ColourReport& report) { return part(report).r457; });
-        add(prefix + "whiteness_e313", [part](const ColourReport& report) {
+        add(names[2], [part](const ColourReport& report) { return part(report).r457; });
+        add(names[3], [part](const ColourReport& report) {
             const auto& e313 = part(report).e313;
             return e313 ? Optional(e313->whiteness) : Optional();
         });
-        add(prefix + "yellowness_e313", [part](const ColourReport& report) {
+        add(names[4], [part](const ColourReport& report) {
             const auto& e313 = part(report).e313;
             return e313 ? Optional(e313->yellowness) : Optional();
         });
@@ -83,19 +84,25 @@ const IndexedColour& without_uv(const ColourReport& report) {
     return report.uv_excluded;
 }
 
-void add_names(Columns& columns, const ColourOptions& options, bool all) {
-    columns.push_back(
-        {"sample", [](const SeenSample& sample, const auto&) { return sample.sample.name; }});
-    if (all)
-        columns.push_back({"geometry", [](const SeenSample& sample, const auto&) {
-                               return sample.sample.matrix.geometry;
-                           }});
+void add_conditions(Columns& columns, bool with_observer) {
     columns.push_back(
         {"lamp", [](const auto&, const SeenColour& seen) { return seen.report.illuminant; }});
-    if (all || options.observers.size() > 1)
+    if (with_observer)
         columns.push_back({"observer", [](const auto&, const SeenColour& seen) {
                                return observer_name(seen.report.observer);
                            }});
+}
+
+void add_short_names(Columns& columns, const ColourOptions& options) {
+    columns.push_back(
+        {"sample", [](const SeenSample& sample, const auto&) { return sample.sample.short_name; }});
+    add_conditions(columns, options.observers.size() > 1);
+}
+
+void add_geometry(Columns& columns) {
+    columns.push_back({"geometry", [](const SeenSample& sample, const auto&) {
+                           return sample.sample.matrix.geometry;
+                       }});
 }
 
 void add_differences(NumberColumns& numbers, const std::vector<std::string>& names) {
@@ -132,18 +139,8 @@ void add_polygons(Columns& columns, const ColourOptions& options) {
                        }});
 }
 
-ColourTable table_of(const Columns& columns, const std::vector<SeenSample>& samples) {
-    ColourTable table;
-    for (const Column& column : columns)
-        table.header.push_back(column.name);
-    for (const SeenSample& sample : samples)
-        for (const SeenColour& seen : sample.colours) {
-            std::vector<std::string>& row = table.rows.emplace_back();
-            for (const Column& column : columns)
-                row.push_back(column.cell(sample, seen));
-        }
-    return table;
-}
+/// What becomes of columns without any value.
+enum class Empty { Kept, LeftOut };
 
 void drop_empty_columns(ColourTable& table) {
     for (std::size_t c = table.header.size(); c-- > 0;) {
@@ -155,6 +152,21 @@ void drop_empty_columns(ColourTable& table) {
         for (auto& row : table.rows)
             row.erase(row.begin() + at);
     }
+}
+
+ColourTable table_of(const Columns& columns, const std::vector<SeenSample>& samples, Empty empty) {
+    ColourTable table;
+    for (const Column& column : columns)
+        table.header.push_back(column.name);
+    for (const SeenSample& sample : samples)
+        for (const SeenColour& seen : sample.colours) {
+            std::vector<std::string>& row = table.rows.emplace_back();
+            for (const Column& column : columns)
+                row.push_back(column.cell(sample, seen));
+        }
+    if (empty == Empty::LeftOut)
+        drop_empty_columns(table);
+    return table;
 }
 
 /// Characters, not bytes.
@@ -183,32 +195,54 @@ std::string csv_cell(const std::string& text) {
 
 ColourTable short_table(const std::vector<SeenSample>& samples, const ColourOptions& options) {
     Columns columns;
-    add_names(columns, options, false);
+    add_short_names(columns, options);
     add_colour(columns, whole);
     NumberColumns numbers(columns, "{:.2f}");
-    numbers.add_indices("", whole);
+    numbers.add_indices({"W", "tint", "R457", "W E313", "YI E313"}, whole);
     if (!options.against.empty())
         add_differences(numbers, {"dE76", "dE94", "dE2000", "CMC(2:1)"});
     add_polygons(columns, options);
-    ColourTable table = table_of(columns, samples);
-    drop_empty_columns(table);
+    return table_of(columns, samples, Empty::LeftOut);
+}
+
+ColourTable colour_table(const std::vector<SeenSample>& samples, const ColourOptions& options,
+                         bool uv_excluded) {
+    Columns columns;
+    add_short_names(columns, options);
+    add_geometry(columns);
+    add_colour(columns, uv_excluded ? without_uv : whole);
+    return table_of(columns, samples, Empty::LeftOut);
+}
+
+ColourTable index_table(const std::vector<SeenSample>& samples, const ColourOptions& options,
+                        bool uv_excluded) {
+    Columns columns;
+    add_short_names(columns, options);
+    const auto names = static_cast<std::ptrdiff_t>(columns.size());
+    NumberColumns(columns, "{:.2f}")
+        .add_indices({"whiteness CIE", "tint CIE", "R457", "whiteness E313", "yellowness E313"},
+                     uv_excluded ? without_uv : whole);
+    ColourTable table = table_of(columns, samples, Empty::LeftOut);
+    std::erase_if(table.rows, [&](const std::vector<std::string>& row) {
+        return std::all_of(row.begin() + names, row.end(),
+                           [](const std::string& cell) { return cell.empty(); });
+    });
     return table;
 }
 
-ColourTable ultraviolet_table(const std::vector<SeenSample>& samples,
-                              const ColourOptions& options) {
+ColourTable difference_table(const std::vector<SeenSample>& samples, const ColourOptions& options) {
     Columns columns;
-    add_names(columns, options, false);
-    add_colour(columns, without_uv);
-    NumberColumns(columns, "{:.2f}").add_indices("", without_uv);
-    ColourTable table = table_of(columns, samples);
-    drop_empty_columns(table);
-    return table;
+    add_short_names(columns, options);
+    NumberColumns numbers(columns, "{:.2f}");
+    add_differences(numbers, {"CIE 1976", "CIE 1994", "CIEDE2000", "CMC(2:1)"});
+    return table_of(columns, samples, Empty::LeftOut);
 }
 
 ColourTable whole_table(const std::vector<SeenSample>& samples, const ColourOptions& options) {
-    Columns columns;
-    add_names(columns, options, true);
+    Columns columns{
+        {"sample", [](const SeenSample& sample, const auto&) { return sample.sample.name; }}};
+    add_geometry(columns);
+    add_conditions(columns, true);
     columns.push_back({"sums", [](const auto&, const SeenColour& seen) {
                            return seen.report.colour.at_nanometres ? "1 nm" : "bands";
                        }});
@@ -222,16 +256,18 @@ ColourTable whole_table(const std::vector<SeenSample>& samples, const ColourOpti
     numbers.add("h", [](const ColourReport& report) { return report.lch[2]; });
     numbers.add("Y_reflected",
                 [](const ColourReport& report) { return report.colour.luminance_reflected; });
-    numbers.add_indices("", whole);
+    numbers.add_indices({"whiteness_cie", "tint_cie", "r457", "whiteness_e313", "yellowness_e313"},
+                        whole);
     numbers.add("uv_share", [](const ColourReport& report) { return report.ultraviolet_share; });
-    const std::string prefix = "uv_excluded_";
-    numbers.add_each({prefix + "X", prefix + "Y", prefix + "Z"}, without_uv, xyz);
-    numbers.add_each({prefix + "L", prefix + "a", prefix + "b"}, without_uv, lab);
-    numbers.add_indices(prefix, without_uv);
+    numbers.add_each({"uv_excluded_X", "uv_excluded_Y", "uv_excluded_Z"}, without_uv, xyz);
+    numbers.add_each({"uv_excluded_L", "uv_excluded_a", "uv_excluded_b"}, without_uv, lab);
+    numbers.add_indices({"uv_excluded_whiteness_cie", "uv_excluded_tint_cie", "uv_excluded_r457",
+                         "uv_excluded_whiteness_e313", "uv_excluded_yellowness_e313"},
+                        without_uv);
     if (!options.against.empty())
         add_differences(numbers, {"cie1976", "cie1994", "ciede2000", "cmc21"});
     add_polygons(columns, options);
-    return table_of(columns, samples);
+    return table_of(columns, samples, Empty::Kept);
 }
 
 std::string aligned(const ColourTable& table) {

@@ -15,12 +15,17 @@ struct ColourTable {
     std::vector<std::vector<std::string>> rows;
 };
 
-/// The colour and the indices as people read them, few digits; columns that hold nothing are left
-/// out.
+/// Tables for people have few digits, short names of samples, and no column that holds nothing.
+/// This one has the colour, the indices and the differences.
 ColourTable short_table(const std::vector<SeenSample>& samples, const ColourOptions& options);
-
-/// The same of `uv_excluded`, and the share of the lamp that is ultraviolet.
-ColourTable ultraviolet_table(const std::vector<SeenSample>& samples, const ColourOptions& options);
+/// The colour alone; without what ultraviolet light excites where `uv_excluded`.
+ColourTable colour_table(const std::vector<SeenSample>& samples, const ColourOptions& options,
+                         bool uv_excluded);
+/// Whiteness, tint, R457 and E313. Rows of lamps for which none is defined are left out.
+ColourTable index_table(const std::vector<SeenSample>& samples, const ColourOptions& options,
+                        bool uv_excluded);
+/// Differences from the reference.
+ColourTable difference_table(const std::vector<SeenSample>& samples, const ColourOptions& options);
 
 /// All numbers of the JSON but those per wavelength, ten digits.
 ColourTable whole_table(const std::vector<SeenSample>& samples, const ColourOptions& options);

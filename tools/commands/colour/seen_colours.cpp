@@ -1,5 +1,6 @@
 #include "tools/commands/colour/seen_colours.h"
 
+#include "host/spectral/evidence/scatter_warnings.h"
 #include "reradiant/error.h"
 
 #include <fmt/format.h>
@@ -31,14 +32,25 @@ std::vector<ColourPolygon> read_polygons(const ColourOptions& options) {
     return polygons;
 }
 
-ColourReport report_of(const ColourSample& sample, ColourReporter& reporter) {
+ColourReport report_of(const ColourSample& sample, ColourReporter& reporter,
+                       const std::vector<std::string>& scatter) {
     try {
-        return reporter.report_of(sample.matrix);
+        return reporter.report_of(sample.matrix, scatter);
     } catch (const std::invalid_argument& error) {
         throw_input_error({sample.file.string()},
                           fmt::format("under {}, {}", reporter.lamp().name, error.what()),
                           "a colour needs emission bands in the visible, and light there");
     }
+}
+
+/// Reports of a sample by all reporters, in their order.
+std::vector<ColourReport> reports_of(const ColourSample& sample,
+                                     std::vector<ColourReporter>& reporters) {
+    const std::vector<std::string> scatter = scatter_warnings(sample.matrix);
+    std::vector<ColourReport> reports;
+    for (ColourReporter& reporter : reporters)
+        reports.push_back(report_of(sample, reporter, scatter));
+    return reports;
 }
 
 /// All lamps for the first observer, then for the next.
@@ -71,15 +83,16 @@ std::vector<SeenColour> see_sample(const ColourSample& sample,
                                    const std::vector<ColourPolygon>& polygons,
                                    std::size_t lamp_count) {
     std::vector<SeenColour> seen;
-    for (std::size_t k = 0; k < reporters.size(); ++k) {
-        SeenColour one{report_of(sample, reporters[k]), {}};
-        test_polygons(one.report, polygons);
-        if (!references.empty()) {
-            one.against = references[k];
-            compare_with(one.report, references[k]);
+    for (ColourReport& report : reports_of(sample, reporters)) {
+        const std::size_t k = seen.size();
+        test_polygons(report, polygons);
+        if (references.empty()) {
+            seen.push_back({std::move(report), {}});
+            continue;
         }
-        seen.push_back(std::move(one));
-        if (!references.empty() && k % lamp_count > 0)
+        compare_with(report, references[k]);
+        seen.push_back({std::move(report), references[k]});
+        if (k % lamp_count > 0)
             set_metamerism(seen.back(), seen[k - k % lamp_count]);
     }
     return seen;
@@ -100,11 +113,8 @@ std::vector<SeenSample> see_samples(const ColourOptions& options) {
     const std::vector<ColourPolygon> polygons = read_polygons(options);
     std::vector<ColourSample> samples = read_samples(options);
     std::vector<ColourReport> references;
-    if (!options.against.empty()) {
-        const ColourSample reference = read_reference(options);
-        for (ColourReporter& reporter : reporters)
-            references.push_back(report_of(reference, reporter));
-    }
+    if (!options.against.empty())
+        references = reports_of(read_reference(options), reporters);
     std::vector<SeenSample> seen;
     for (ColourSample& sample : samples) {
         std::vector<SeenColour> colours =
