@@ -31,6 +31,11 @@ Spectrum paper_around(const std::vector<Fluorophore>& dyes, double share) {
     return Spectrum::table(nm, left);
 }
 
+/// Every second set has noise that is the same everywhere.
+bool is_noise_even(unsigned seed) {
+    return seed % 2 == 0;
+}
+
 /// One to three ordinary dyes, or a brightened white, measured with noise that is the same
 /// everywhere or, every second time, grows with the signal.
 SynthRecipe random_recipe(unsigned seed) {
@@ -45,7 +50,7 @@ SynthRecipe random_recipe(unsigned seed) {
         recipe.fluorophores = {as_fluorophore({370.0, 22.0, 0.6, 440.0, 22.0, 0.8})};
     recipe.reflectance = paper_around(recipe.fluorophores, uniform(random, 0.3, 0.95));
     recipe.noise.read_of_peak = std::pow(10.0, uniform(random, -3.0, -1.3));
-    if (seed % 2 == 1)
+    if (!is_noise_even(seed))
         recipe.noise.relative = uniform(random, 0.0, 0.01);
     return recipe;
 }
@@ -70,11 +75,12 @@ struct Held {
     }
 };
 
-void count_set(unsigned seed, const std::vector<Lamp>& lamps, std::vector<Held>& held) {
+void count_set(unsigned seed, bool is_told, const std::vector<Lamp>& lamps,
+               std::vector<Held>& held) {
     const SynthRecipe recipe = random_recipe(seed);
     const ReradiationMatrix truth = synth_truth(recipe);
     BispectralData data = synthesise(recipe, seed).data;
-    if (seed % 5 < 2) // as a CSV has them
+    if (!is_told) // as a re-radiation CSV has them
         data.blocks.front().sigma.setConstant(not_measured);
     FitSettings settings;
     settings.covariance = true;
@@ -88,30 +94,49 @@ void count_set(unsigned seed, const std::vector<Lamp>& lamps, std::vector<Held>&
     }
 }
 
+void print(const std::string& name, const Held& held) {
+    fmt::print("{}: of {} sets, intervals by linearisation hold {:.1f} % (L* {:.1f}, a* {:.1f}, b* "
+               "{:.1f}), by draws {:.1f} %\n",
+               name, held.sets, held.percent(held.linearised),
+               100.0 * held.linearised[0] / held.sets, 100.0 * held.linearised[1] / held.sets,
+               100.0 * held.linearised[2] / held.sets, held.percent(held.drawn));
+}
+
 } // namespace
 
-// Of 600 intervals 90 to 99 % hold the truth. Those of one set are wrong together: with a sixth of
-// the sets the limits are wider.
+// Of 600 intervals 90 to 99 % hold the truth, where the noise is told or the same everywhere. Those
+// of one set are wrong together: with a tenth of the sets the limits are wider.
 TEST(ColourCoverage, IntervalsOfFitsHoldTheTruth) {
-    const int sets = test::is_full_run() ? 200 : 30;
-    const double least = test::is_full_run() ? 90.0 : 85.0,
-                 most = test::is_full_run() ? 99.0 : 100.0;
+    const int sets = test::is_full_run() ? 200 : 12;
+    const double least = test::is_full_run() ? 90.0 : 75.0;
+    const double most = test::is_full_run() ? 99.0 : 100.0;
     const std::vector<Lamp> lamps{lamp_from_text("D65"), lamp_from_text("A")};
     std::vector<Held> held(lamps.size());
-    for (int set = 0; set < sets; ++set)
-        count_set(static_cast<unsigned>(set), lamps, held);
+    for (int set = 0; set < sets; ++set) {
+        const auto seed = static_cast<unsigned>(set);
+        count_set(seed, !is_noise_even(seed) || seed % 4 == 0, lamps, held);
+    }
     for (std::size_t k = 0; k < lamps.size(); ++k) {
-        const Held& one = held[k];
-        fmt::print(
-            "{}: of {} sets, intervals by linearisation hold {:.1f} % (L* {:.1f}, a* {:.1f}, "
-            "b* {:.1f}), by draws {:.1f} %\n",
-            lamps[k].name, one.sets, one.percent(one.linearised),
-            100.0 * one.linearised[0] / one.sets, 100.0 * one.linearised[1] / one.sets,
-            100.0 * one.linearised[2] / one.sets, one.percent(one.drawn));
-        for (const auto& list : {one.linearised, one.drawn}) {
-            EXPECT_GE(one.percent(list), least) << lamps[k].name;
-            EXPECT_LE(one.percent(list), most) << lamps[k].name;
+        print(lamps[k].name, held[k]);
+        for (const auto& list : {held[k].linearised, held[k].drawn}) {
+            EXPECT_GE(held[k].percent(list), least) << lamps[k].name;
+            EXPECT_LE(held[k].percent(list), most) << lamps[k].name;
         }
+    }
+}
+
+// An estimate takes the noise for the same everywhere, which it is not: intervals are too narrow,
+// and the documents say so.
+TEST(ColourCoverage, UnevenNoiseThatIsNotToldMakesIntervalsNarrow) {
+    if (!test::is_full_run())
+        GTEST_SKIP() << "a full run measures it";
+    const std::vector<Lamp> lamps{lamp_from_text("D65"), lamp_from_text("A")};
+    std::vector<Held> held(lamps.size());
+    for (unsigned seed = 1; seed < 200; seed += 2)
+        count_set(seed, false, lamps, held);
+    for (std::size_t k = 0; k < lamps.size(); ++k) {
+        print(lamps[k].name + ", uneven noise that is not told", held[k]);
+        EXPECT_GE(held[k].percent(held[k].linearised), 60.0);
     }
 }
 

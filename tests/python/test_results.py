@@ -112,7 +112,9 @@ class AgainstTheProgram(unittest.TestCase):
                 self.assertEqual(list(told), list(found))
                 for key in told:
                     for name in ("XYZ", "Lab", "beta_T"):
-                        np.testing.assert_allclose(found[key][name], told[key][name], rtol=1e-9)
+                        np.testing.assert_allclose(  # None, where the lamp is dark, becomes NaN
+                            np.array(found[key][name], float), np.array(told[key][name], float),
+                            rtol=1e-9)
                     self.assertEqual(found[key].get("delta_e"), told[key].get("delta_e"))
                     self.assertEqual(found[key].get("metamerism"), told[key].get("metamerism"))
 

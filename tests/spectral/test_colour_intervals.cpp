@@ -115,7 +115,7 @@ TEST(ColourIntervals, AreThoseOfMatricesThatAreDrawnOneByOne) {
         ColourReporter reporter(lamp, ColourSum::Automatic, Observer::Cie1931Deg2);
         for (int k = 0; k < draws; ++k) {
             const auto lab =
-                reporter.report_of(drawn_matrix(matrix, covariance, random)).colour.lab;
+                reporter.report_of(drawn_matrix(matrix, covariance, random), {}).colour.lab;
             const Eigen::Array3d at(lab[0], lab[1], lab[2]);
             sum += at;
             squares += at * at;

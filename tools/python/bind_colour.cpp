@@ -5,6 +5,7 @@
 #include "host/spectral/colour/colour_intervals.h"
 #include "host/spectral/colour/colour_report.h"
 #include "host/spectral/colour/lamp.h"
+#include "host/spectral/evidence/scatter_warnings.h"
 #include "reradiant/matrix_covariance.h"
 #include "reradiant/scene_file.h"
 #include "tools/python/bindings.h"
@@ -82,7 +83,7 @@ struct Question {
 /// The report under one lamp, without what it takes other lamps to say.
 ColourReport report_of(const ReradiationMatrix& matrix, ColourReporter& reporter,
                        const Question& question) {
-    ColourReport report = reporter.report_of(matrix);
+    ColourReport report = reporter.report_of(matrix, scatter_warnings(matrix));
     if (question.covariance)
         set_intervals(report, matrix, *question.covariance, reporter.lamp(), question.sum,
                       question.seed);
@@ -102,7 +103,7 @@ py::dict colour(const ReradiationMatrix& matrix, const py::dict& given) {
             ColourReporter reporter(lamp, question.sum, observer);
             ColourReport report = report_of(matrix, reporter, question);
             if (question.against) {
-                const ColourReport against = reporter.report_of(*question.against);
+                const ColourReport against = reporter.report_of(*question.against, {});
                 compare_with(report, against);
                 if (first)
                     report.metamerism = metamerism_index(first_against->colour, first->colour,

@@ -100,13 +100,13 @@ def from_distributions(distributions: Any, **options: Any) -> Reradiation:
 
 def radiance_factors(colour_of_lamp: Any) -> Any:
     """A colour.MultiSpectralDistributions with the signals beta_T, beta_R and beta_L of what
-    `reradiant.colour` says of one lamp."""
+    `reradiant.colour` says of one lamp; NaN where the lamp is dark."""
     if not isinstance(colour_of_lamp, dict) or "beta_T" not in colour_of_lamp:
         raise _checks.refuse("colour_of_lamp", f"is a {type(colour_of_lamp).__name__} without radiance "
                              "factors", "give an entry of what colour() returns")
     names = ["beta_T", "beta_R", "beta_L"]
     return _colour().MultiSpectralDistributions(
-        np.transpose([colour_of_lamp[name] for name in names]), colour_of_lamp["nm"], labels=names)
+        np.transpose(np.array([colour_of_lamp[name] for name in names], float)), colour_of_lamp["nm"], labels=names)
 
 
 def to_image(image: Image) -> Any:
