@@ -1,5 +1,5 @@
-#include "host/spectral/colour/colour_intervals.h"
 #include "host/spectral/colour/lamp.h"
+#include "host/spectral/covariance/colour_intervals.h"
 #include "reradiant/error.h"
 #include "reradiant/synth.h"
 #include "tests/fit/fit_cases.h"

@@ -1,8 +1,8 @@
-#include "host/spectral/colour/colour_intervals.h"
+#include "host/spectral/covariance/colour_intervals.h"
 
-#include "host/spectral/colour/colour_gradient.h"
 #include "host/spectral/colour/colour_indices.h"
 #include "host/spectral/colour/lamp.h"
+#include "host/spectral/covariance/colour_gradient.h"
 
 #include <gtest/gtest.h>
 

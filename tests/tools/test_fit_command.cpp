@@ -102,6 +102,10 @@ TEST_F(FitCommand, CovariancesOfSomethingElseAreRefused) {
     const std::string whole = file_bytes(folder / "cov.csv");
     put("half.csv", whole.substr(0, whole.rfind('\n', whole.size() / 2) + 1));
     expect_failure(2, "colour out.csv --covariance half.csv", "half.csv:");
+    expect_failure(2, "validate half.csv", "half.csv:");
+    expect_failure(2, "colour cov.csv", "--covariance takes it");
+    EXPECT_NE(run("validate cov.csv").output.find("covariance of a re-radiation matrix"),
+              std::string::npos);
 }
 
 TEST_F(FitCommand, MasksScatterAndSaysSo) {

@@ -1,6 +1,6 @@
 #include "host/spectral/colour/colour_report.h"
 
-#include "host/spectral/colour/colour_intervals.h"
+#include "host/spectral/covariance/colour_intervals.h"
 #include "host/spectral/evidence/scatter_warnings.h"
 
 #include <cmath>

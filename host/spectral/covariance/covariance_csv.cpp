@@ -1,7 +1,8 @@
+#include "reradiant/matrix_covariance.h"
+
 #include "host/base/atomic_file.h"
 #include "host/spectral/files/matrix_formats.h"
 #include "host/spectral/text/csv_lines.h"
-#include "reradiant/matrix_covariance.h"
 
 #include <fmt/format.h>
 

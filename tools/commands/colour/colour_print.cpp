@@ -1,6 +1,6 @@
 #include "tools/commands/colour/colour_print.h"
 
-#include "host/spectral/colour/colour_intervals.h"
+#include "host/spectral/covariance/colour_intervals.h"
 
 #include <fmt/format.h>
 

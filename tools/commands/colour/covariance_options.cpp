@@ -1,6 +1,6 @@
 #include "tools/commands/colour/covariance_options.h"
 
-#include "host/spectral/colour/colour_intervals.h"
+#include "host/spectral/covariance/colour_intervals.h"
 #include "reradiant/error.h"
 #include "reradiant/spectral_files.h"
 

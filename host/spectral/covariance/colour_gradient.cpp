@@ -1,4 +1,4 @@
-#include "host/spectral/colour/colour_gradient.h"
+#include "host/spectral/covariance/colour_gradient.h"
 
 #include "host/spectral/colour/band_sums.h"
 #include "host/spectral/colour/colour_indices.h"

@@ -1,6 +1,6 @@
-#include "host/spectral/colour/colour_intervals.h"
+#include "host/spectral/covariance/colour_intervals.h"
 
-#include "host/spectral/colour/colour_gradient.h"
+#include "host/spectral/covariance/colour_gradient.h"
 
 #include <fmt/core.h>
 
