@@ -3,7 +3,6 @@
 #include "reradiant/bispectral_data.h"
 #include "reradiant/interruption.h"
 #include "reradiant/layer_stack.h"
-#include "reradiant/matrix_covariance.h"
 #include "reradiant/reradiation.h"
 #include "reradiant/scatter_line.h"
 
@@ -158,7 +157,7 @@ struct FitResult {
     Eigen::MatrixXd used;  ///< 1 where an entry of `data` took part in the fit, else 0
     FitMask mask;          ///< entries that were taken as not measured
     /// What is uncertain about `matrix`: noise of the data through the model, that of the diagonal
-    /// besides. Its standard errors are `sigma`. Empty unless asked for.
+    /// besides, and what the bound at zero makes of noise. Empty unless asked for.
     std::optional<MatrixCovariance> covariance;
     FittedCurves emission;   ///< integral 1 over emission, 1/nm; empty for `matrix`
     FittedCurves excitation; ///< share of the irradiance that the term would emit untruncated

@@ -1,4 +1,4 @@
-#include "reradiant/matrix_covariance.h"
+#include "reradiant/reradiation.h"
 #include "tests/fuzz/fuzz_input.h"
 
 // The CSV of `fit --covariance`.

@@ -1,5 +1,5 @@
 #include "reradiant/error.h"
-#include "reradiant/matrix_covariance.h"
+#include "reradiant/reradiation.h"
 #include "tests/support/scratch_folder.h"
 
 #include <gtest/gtest.h>

@@ -13,7 +13,6 @@
 #include "host/study/study/study_file.h"
 #include "reradiant/bispectral_data.h"
 #include "reradiant/error.h"
-#include "reradiant/matrix_covariance.h"
 #include "reradiant/reradiation.h"
 #include "reradiant/scene.h"
 #include "reradiant/scene_file.h"

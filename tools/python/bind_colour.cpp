@@ -6,7 +6,7 @@
 #include "host/spectral/colour/lamp.h"
 #include "host/spectral/covariance/colour_intervals.h"
 #include "host/spectral/evidence/scatter_warnings.h"
-#include "reradiant/matrix_covariance.h"
+#include "reradiant/reradiation.h"
 #include "reradiant/scene_file.h"
 #include "tools/python/bindings.h"
 #include "tools/python/call.h"

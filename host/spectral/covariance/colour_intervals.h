@@ -2,7 +2,7 @@
 
 #include "host/spectral/colour/colour_report.h"
 #include "host/spectral/colour/lamp.h"
-#include "reradiant/matrix_covariance.h"
+#include "reradiant/reradiation.h"
 
 namespace reradiant {
 

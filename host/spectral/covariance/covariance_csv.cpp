@@ -1,4 +1,4 @@
-#include "reradiant/matrix_covariance.h"
+#include "reradiant/reradiation.h"
 
 #include "host/base/atomic_file.h"
 #include "host/spectral/files/matrix_formats.h"

@@ -1,4 +1,4 @@
-#include "reradiant/matrix_covariance.h"
+#include "reradiant/reradiation.h"
 
 #include <Eigen/Eigenvalues>
 #include <fmt/core.h>
