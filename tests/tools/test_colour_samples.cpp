@@ -159,6 +159,9 @@ TEST_F(ColourSamples, MaterialsMatricesAndMeasurementsStandInOneTable) {
     EXPECT_EQ(table("out.csv")[0].at("geometry"), "45/0");
     EXPECT_EQ(table("out.csv")[1].at("geometry"), "") << "the matrix does not say it";
     ASSERT_EQ(run("colour varnished.csv --geometry 45:20:180 --json steep.json").exit_code, 0);
+    EXPECT_EQ(
+        run("colour synthetic-green.csv --against varnished.csv --geometry 45:20:180").exit_code, 0)
+        << "the geometry is that of the reference";
     expect_failure(2, "colour varnished.csv --geometry 45:30",
                    "it holds 45:0:0, 45:0:180, 45:20:0, 45:20:180");
     expect_failure(2, "colour varnished.csv --geometry 8/d", "--hemispherical --theta-i 8");

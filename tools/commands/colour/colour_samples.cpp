@@ -122,8 +122,10 @@ ReradiationMatrix read_matrix(const fs::path& file, const ColourOptions& options
 }
 
 /// A geometry that changes nothing is a mistake.
-void require_use_of_geometry(const ColourOptions& options, const std::vector<fs::path>& files) {
+void require_use_of_geometry(const ColourOptions& options, std::vector<fs::path> files) {
     asked_geometry(options);
+    if (!options.against.empty())
+        files.push_back(options.against);
     if (options.geometry.empty() || std::any_of(files.begin(), files.end(), [](const fs::path& f) {
             require_file(f);
             return takes_geometry(file_kind(f));
