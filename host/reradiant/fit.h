@@ -127,6 +127,7 @@ struct FitSettings {
     std::optional<LayerStack> stack; ///< what lay above the sample; empty: nothing did
     UnknownLayers unknown;           ///< numbers of the stack that are fitted with the matrix
     int starts = 3;                  ///< initial guesses that are tried
+    bool covariance = false;         ///< FitResult::covariance is asked for; not with `matrix`
     SolverSettings solver;
     unsigned seed = 0; ///< of the random starts
     int threads = 0;   ///< 0: all; the result is the same with any number
@@ -155,7 +156,10 @@ struct FitResult {
     Eigen::MatrixXd data;  ///< what was fitted (through the layer: of the substrate), NaN: missing
     Eigen::MatrixXd used;  ///< 1 where an entry of `data` took part in the fit, else 0
     FitMask mask;          ///< entries that were taken as not measured
-    FittedCurves emission; ///< integral 1 over emission, 1/nm; empty for `matrix`
+    /// What is uncertain about `matrix`: noise of the data through the model, that of the diagonal
+    /// besides, and what the bound at zero makes of noise. Empty unless asked for.
+    std::optional<MatrixCovariance> covariance;
+    FittedCurves emission;   ///< integral 1 over emission, 1/nm; empty for `matrix`
     FittedCurves excitation; ///< share of the irradiance that the term would emit untruncated
     double noise = 0.0;      ///< median standard error of the data
     bool noise_is_estimated = false;

@@ -5,6 +5,7 @@ import pathlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "tools" / "examples"
+SPECTRA = ROOT / "spectra"
 PROGRAM = os.environ["RERADIANT_PROGRAM"]
 
 

@@ -264,8 +264,47 @@ class BadInput(unittest.TestCase):
     def test_colours(self):
         flat = rr.Reradiation(np.eye(41) * 0.5, NM, NM)
         self.refused(["D65"], rr.colour, flat, "D66")
-        self.refused(["illuminant", "str"], rr.colour, flat, [1])
-        self.refused(["matrix"], rr.colour, 1)
+        self.refused(["lamps", "int", "str"], rr.colour, flat, [1])
+        self.refused(["sample", "int"], rr.colour, 1)
+        self.refused(["sample", "preset"], rr.colour)
+        self.refused(["sample", "preset"], rr.colour, flat, preset="red-lacquer")
+        self.refused(["sample", "ndarray", "Reradiation"], rr.colour, np.eye(41))
+        table = np.column_stack([NM, np.ones(41)])
+        for words, options in (
+                (["observer", "1964-10"], {"observer": "10"}), (["observer"], {"observer": []}),
+                (["geometry", "matrix"], {"geometry": "8/d"}), (["uv_cut"], {"uv_cut": 1000}),
+                (["uv_cut"], {"uv_cut": "420"}), (["e308"], {"e308": 1}),
+                (["lamps", "once"], {"lamps": ["D65", "D65"]}), (["lamps", "once"], {"lamps": {}}),
+                (["lamps", "shape (3, 3)"], {"lamps": np.eye(3)}),
+                (["lamps", "ascend"], {"lamps": table[::-1]}),
+                (["lamps", "negative"], {"lamps": table * [1, -1]}),
+                (["lamps['mine']", "int"], {"lamps": {"mine": 3}}),
+                (["none.csv"], {"lamps": pathlib.Path("none.csv")}),
+                (["none.csv"], {"polygons": "none.csv"}), (["none.csv"], {"against": "none.csv"}),
+                (["none.csv"], {"covariance": "none.csv"}),
+                (["covariance", "(41,)"], {"covariance": np.ones(41)}),
+                (["independent", "(3, 3)"], {"covariance": np.ones((3, 3))}),
+                (["independent", "negative"], {"covariance": -np.eye(41)}),
+                (["preset"], {"sample": None, "preset": "none"})):
+            with self.subTest(options=options):
+                self.refused(words, rr.colour, **{"sample": flat, **options})
+        self.refused(["95/0"], rr.colour, preset="red-lacquer", geometry="95/0")
+        measured = rr.measure({"substrate": {"type": "lambert"}}, theta_i=45, bands=(400, 700, 10))
+        self.refused(["sample: ", "8/d"], rr.colour, measured, geometry="8/d")
+
+    def test_covariances(self):
+        self.refused(["independent", "(2, 2)"], rr.Covariance, NM, NM, independent=np.eye(2))
+        self.refused(["directions", "dimension"], rr.Covariance, NM, NM, directions=np.eye(41))
+        self.refused(["emission_nm", "ascend"], rr.Covariance, [400, 410, 430], NM)
+        self.refused(["independent", "negative", "[0, 0]"], rr.Covariance, NM, NM,
+                     independent=-np.eye(41))
+        small = rr.Covariance(NM[:40], NM[:40], independent=np.eye(40))
+        self.refused(["bands"], rr.colour, rr.Reradiation(np.eye(41) * 0.5, NM, NM), covariance=small)
+
+    def test_plots(self):
+        self.refused(["curves", "dict"], rr.Plot, [[1, 2]])
+        self.refused(["curves['a']", "pair"], rr.Plot, {"a": [1, 2, 3]})
+        self.refused(["curves['a']", "2 x and 1 y"], rr.Plot, {"a": ([1, 2], [3])})
 
     def test_files_that_cannot_be_written(self):
         image = rr.Image(np.ones((2, 2, 2), np.float32), [400, 500])

@@ -6,6 +6,8 @@ import types
 import unittest
 from unittest import mock
 
+import numpy as np
+
 import reradiant as rr
 
 
@@ -43,6 +45,41 @@ class ChannelLimit(unittest.TestCase):
             with self.assertRaisesRegex(rr.RunError, "OpenImageIO"):
                 rr.colour_science.read_spectral_image("m.exr")
         self.assertEqual(self.limit_when_called, [])
+
+
+class Signals:
+    """As much of a distribution of colour-science as is looked at."""
+
+    def __init__(self, values, wavelengths, labels=None, name=""):
+        self.values, self.wavelengths, self.labels, self.name = values, wavelengths, labels, name
+
+
+class Objects(unittest.TestCase):
+    def setUp(self):
+        colour = types.ModuleType("colour")
+        for kind in ("SpectralDistribution", "MultiSpectralDistributions"):
+            setattr(colour, kind, type(kind, (Signals,), {"__module__": "colour.colorimetry"}))
+        self.enterContext(mock.patch.dict(sys.modules, {"colour": colour}))
+        self.colour = colour
+
+    def test_are_lamps_and_samples_of_colour(self):
+        nm = np.arange(380, 781, 10.0)
+        grey = rr.Reradiation(0.2 * np.eye(41), nm, nm)
+        lamp = self.colour.SpectralDistribution(np.ones(41), nm, name="even")
+        seen = rr.colour(rr.colour_science.to_distributions(grey), lamp)
+        self.assertEqual(list(seen), ["even"])
+        self.assertAlmostEqual(seen["even"]["XYZ"][1], 20.0)
+        self.assertEqual(list(rr.colour(grey, {"mine": lamp})), ["mine"])
+
+    def test_radiance_factors_become_signals(self):
+        nm = np.arange(380, 781, 10.0)
+        seen = rr.colour(rr.Reradiation(0.2 * np.eye(41), nm, nm))["D65"]
+        signals = rr.colour_science.radiance_factors(seen)
+        self.assertEqual(signals.labels, ["beta_T", "beta_R", "beta_L"])
+        np.testing.assert_allclose(signals.values, np.tile([0.2, 0.2, 0.0], (41, 1)))
+        np.testing.assert_array_equal(signals.wavelengths, nm)
+        with self.assertRaisesRegex(rr.InputError, "colour_of_lamp"):
+            rr.colour_science.radiance_factors({})
 
 
 if __name__ == "__main__":

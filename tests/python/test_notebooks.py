@@ -42,6 +42,9 @@ class Notebooks(unittest.TestCase):
     def test_material_study(self):
         run(EXAMPLES / "material-study.ipynb")
 
+    def test_brightened_paper(self):
+        run(EXAMPLES / "brightened-paper.ipynb")
+
     def test_notebooks_carry_no_outputs(self):
         for file in EXAMPLES.glob("*.ipynb"):
             for cell in json.loads(file.read_text(encoding="utf-8"))["cells"]:

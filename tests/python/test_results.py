@@ -10,7 +10,7 @@ import unittest
 import numpy as np
 
 import reradiant as rr
-from scenes import EXAMPLES, PROGRAM, material_scene, sphere_scene
+from scenes import EXAMPLES, PROGRAM, SPECTRA, material_scene, sphere_scene
 
 
 class AgainstTheProgram(unittest.TestCase):
@@ -84,9 +84,79 @@ class AgainstTheProgram(unittest.TestCase):
         self.program("colour", "f.csv", "--illuminant", "D65,A", "--json", "c.json")
         self.assertEqual(json.loads((self.folder / "c.json").read_text()),
                          rr.colour(fitted.matrix, ["D65", "A"]))
+        for one, other in ((rr.colour(fitted.matrix, illuminant="A"), rr.colour(fitted.matrix, "A")),
+                           (rr.colour(fitted.matrix, {"D65": rr.Spectrum.illuminant("D65")}),
+                            rr.colour(fitted.matrix))):
+            self.assertEqual(one, other)
         html = fitted._repr_html_()
         self.assertTrue(html.startswith("<svg") and html.rstrip().endswith("</svg>"))
 
+
+    def test_colours_of_every_kind_of_sample(self):
+        """Names of files, objects and dicts are the same samples as on the command line."""
+        self.program("measure", "--preset", "neon-orange-varnished", "-o", "m.csv", "--theta-i", "45")
+        for arguments, options in (
+                (["m.csv"], {"sample": self.folder / "m.csv"}),
+                (["m.csv"], {"sample": rr.measure(preset="neon-orange-varnished", theta_i=45)}),
+                (["--preset", "neon-orange-varnished", "--geometry", "8/de"],
+                 {"preset": "neon-orange-varnished", "geometry": "8/de"}),
+                ([SPECTRA / "reradiation/neon-orange.csv", "--uv-cut", "400", "--against",
+                  SPECTRA / "reradiation/neon-yellow.csv"],
+                 {"sample": rr.Reradiation.read(SPECTRA / "reradiation/neon-orange.csv"), "uv_cut": 400,
+                  "against": SPECTRA / "reradiation/neon-yellow.csv"})):
+            with self.subTest(arguments=arguments):
+                self.program("colour", *arguments, "--illuminant", "D65,FL11", "--observer",
+                             "1931-2,1964-10", "--json", "c.json")
+                told = json.loads((self.folder / "c.json").read_text())
+                found = rr.colour(**options, lamps=["D65", "FL11"], observer=["1931-2", "1964-10"])
+                self.assertEqual(list(told), list(found))
+                for key in told:
+                    for name in ("XYZ", "Lab", "beta_T"):
+                        np.testing.assert_allclose(  # None, where the lamp is dark, becomes NaN
+                            np.array(found[key][name], float), np.array(told[key][name], float),
+                            rtol=1e-9)
+                    self.assertEqual(found[key].get("delta_e"), told[key].get("delta_e"))
+                    self.assertEqual(found[key].get("metamerism"), told[key].get("metamerism"))
+
+    def test_lamps_of_every_kind(self):
+        orange = rr.Reradiation.read(SPECTRA / "reradiation/neon-orange.csv")
+        nm = np.arange(300, 831, 5.0)
+        light = rr.Spectrum.illuminant("D65").at(nm)
+        expected = rr.colour(orange)["D65"]["XYZ"]
+        for lamps in ({"mine": rr.Spectrum(nm, light)}, {"mine": np.column_stack([nm, light])},
+                      {"mine": "D65"}, rr.Spectrum(nm, light), np.column_stack([nm, light]),
+                      SPECTRA / "illuminants/D65.csv"):
+            [found] = rr.colour(orange, lamps).values()
+            np.testing.assert_allclose(found["XYZ"], expected, rtol=1e-6)
+
+    def test_intervals(self):
+        self.program("synth", EXAMPLES / "synth-orange.toml", "-o", "d.csv", "--seed", 3)
+        self.program("fit", "d.csv", "-o", "f.csv", "--rank", 1, "--covariance", "v.csv")
+        self.program("colour", "f.csv", "--covariance", "v.csv", "--json", "c.json")
+        told = json.loads((self.folder / "c.json").read_text())["D65"]["intervals"]
+        fitted = rr.fit(self.folder / "d.csv", rank=1)
+        errors = fitted.covariance.standard_errors
+        self.assertTrue((errors >= fitted.sigma * (1 - 1e-6)).all())
+        read = rr.Covariance.read(self.folder / "v.csv")
+        np.testing.assert_allclose(read.standard_errors, errors, rtol=1e-4, atol=1e-12)
+        directions = fitted.covariance.directions
+        np.testing.assert_allclose((directions ** 2).sum(0) + fitted.covariance.independent ** 2,
+                                   errors ** 2, rtol=1e-9, atol=1e-20)
+        for sample, options in ((fitted, {}), (fitted.matrix, {"covariance": read}),
+                                (fitted.matrix, {"covariance": fitted}),
+                                (self.folder / "f.csv", {"covariance": self.folder / "v.csv"})):
+            found = rr.colour(sample, **options)["D65"]["intervals"]
+            self.assertEqual(list(found["linearised"]), list(told["linearised"]))
+            for end in ("low", "high", "standard_error"):
+                np.testing.assert_allclose(found["linearised"]["Lab"][end],
+                                           told["linearised"]["Lab"][end], rtol=1e-3)
+        same = rr.Covariance(read.emission_nm, read.excitation_nm, independent=read.independent,
+                             directions=read.directions)
+        same.write(self.folder / "w.csv")
+        self.assertEqual(rr.colour(fitted.matrix, covariance=self.folder / "w.csv"),
+                         rr.colour(fitted.matrix, covariance=same))
+        with self.assertRaises(rr.InputError):
+            rr.fit(self.folder / "d.csv", model="matrix").covariance
 
     def test_fit_with_a_mask(self):
         emission, excitation = np.arange(400, 800, 10), np.arange(300, 400, 10)

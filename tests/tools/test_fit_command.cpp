@@ -57,6 +57,57 @@ std::string csv_with_scatter() {
 
 } // namespace
 
+TEST_F(FitCommand, ItsCovarianceGivesColoursWithIntervals) {
+    put("data.csv", measured_csv());
+    const ProgramResult fitted =
+        run("fit data.csv -o out.csv --rank 1 --covariance cov.csv --report report.html");
+    ASSERT_EQ(fitted.exit_code, 0) << fitted.errors;
+    const std::string report = file_bytes(folder / "report.html");
+    EXPECT_NE(report.find("Under D65, for the observer of 1931: data and fit."), std::string::npos);
+    EXPECT_NE(report.find("equal at all wavelengths from 300 to 400 nm"), std::string::npos);
+    const ProgramResult seen =
+        run("colour out.csv --covariance cov.csv --illuminant D65,A --json colour.json");
+    ASSERT_EQ(seen.exit_code, 0) << seen.errors;
+    EXPECT_NE(seen.output.find("95 % of Lab:"), std::string::npos) << seen.output;
+    const auto colour = nlohmann::json::parse(file_bytes(folder / "colour.json"));
+    for (const char* lamp : {"D65", "A"}) {
+        const auto& told = colour[lamp];
+        EXPECT_EQ(told["intervals"]["level"], 0.95);
+        EXPECT_EQ(told["intervals"]["draws"], 1000);
+        for (const char* way : {"linearised", "drawn"})
+            for (std::size_t c = 0; c < 3; ++c) {
+                const auto& lab = told["intervals"][way]["Lab"];
+                EXPECT_LT(lab["low"][c], told["Lab"][c]) << lamp << way;
+                EXPECT_GT(lab["high"][c], told["Lab"][c]) << lamp << way;
+                EXPECT_GT(told["intervals"][way]["uv_excluded"]["XYZ"]["standard_error"][c], 0.0);
+            }
+    }
+    EXPECT_EQ(run("colour out.csv --standard-errors out.csv").exit_code, 0);
+}
+
+TEST_F(FitCommand, CovariancesOfSomethingElseAreRefused) {
+    put("data.csv", measured_csv());
+    ASSERT_EQ(run("fit data.csv -o out.csv --rank 1 --covariance cov.csv").exit_code, 0);
+    expect_failure(2, "colour data.csv --covariance cov.csv", "belongs to another matrix");
+    expect_failure(2, "colour out.csv --covariance out.csv", "out.csv:1:1");
+    expect_failure(2, "colour out.csv data.csv --covariance cov.csv", "one sample");
+    expect_failure(2, "colour --preset red-lacquer --covariance cov.csv", "not a material");
+    expect_failure(2, "colour out.csv --covariance cov.csv --standard-errors out.csv",
+                   "--standard-errors");
+    expect_failure(2, "colour out.csv --standard-errors data.csv", "standard error at emission");
+    expect_failure(2, "colour out.csv --covariance none.csv", "none.csv");
+    expect_failure(2, "fit data.csv -o new.csv --model matrix --covariance new-cov.csv",
+                   "choose factors or gaussians");
+    expect_failure(2, "fit data.csv -o new.csv --covariance data.csv", "data.csv");
+    const std::string whole = file_bytes(folder / "cov.csv");
+    put("half.csv", whole.substr(0, whole.rfind('\n', whole.size() / 2) + 1));
+    expect_failure(2, "colour out.csv --covariance half.csv", "half.csv:");
+    expect_failure(2, "validate half.csv", "half.csv:");
+    expect_failure(2, "colour cov.csv", "--covariance takes it");
+    EXPECT_NE(run("validate cov.csv").output.find("covariance of a re-radiation matrix"),
+              std::string::npos);
+}
+
 TEST_F(FitCommand, MasksScatterAndSaysSo) {
     put("data.csv", csv_with_scatter());
     const std::string line = "second-order scatter at emission = 2 x excitation +- 5 nm";

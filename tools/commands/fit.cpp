@@ -32,7 +32,7 @@ namespace {
 constexpr int exit_not_within_noise = 3;
 
 struct FitOptions {
-    std::filesystem::path data, output, stack, report, model_file;
+    std::filesystem::path data, output, stack, report, model_file, covariance;
     std::string model = "factors", loss = "none", mask = "auto";
     std::optional<int> rank;
     std::optional<double> smooth_nm, spill_nm;
@@ -56,6 +56,7 @@ FitSettings settings_of(const FitOptions& options, const CommonOptions& common) 
     settings.spill_nm = options.spill_nm;
     settings.mask = mask_rules_from_text(options.mask);
     settings.anti_stokes = options.anti_stokes;
+    settings.covariance = !options.covariance.empty();
     settings.unknown = unknown_layers_from_names(options.unknown);
     settings.seed = common.seed;
     settings.solver.most_seconds = options.seconds;
@@ -175,7 +176,8 @@ int run_fit(const FitOptions& options, const CommonOptions& common) {
     const std::vector<NamedOutput> outputs = {
         {"-o", options.output, {".csv", ".exr", ".bfc"}, true},
         {"--report", options.report, {".html"}},
-        {"--model-file", options.model_file, {".toml"}}};
+        {"--model-file", options.model_file, {".toml"}},
+        {"--covariance", options.covariance, {".csv"}}};
     check_outputs(common, outputs, {options.data, options.stack});
     const FitSettings settings = settings_of(options, common);
     check_outputs(common, outputs, named_files());
@@ -203,6 +205,8 @@ int run_fit(const FitOptions& options, const CommonOptions& common) {
                 "to {:.1f} % of its peak",
                 options.model_file.string(), 100.0 * difference);
     }
+    if (result.covariance)
+        write_covariance_csv(options.covariance, *result.covariance);
     if (!options.report.empty())
         write_fit_report(options.report, data, result);
     write_json(common.json, fit_summary(result));
@@ -260,6 +264,8 @@ void add_fit_command(Program& program, CommandContext& context) {
     command.option("--report", options->report, "HTML report to write");
     command.option("--model-file", options->model_file,
                    "compact model as TOML, usable as RERADIATION");
+    command.option("--covariance", options->covariance,
+                   "CSV of what is uncertain about the matrix, for `colour --covariance`");
     command.option("--most-seconds", options->seconds, "time limit of one minimisation")
         .positive()
         .show_default();

@@ -184,6 +184,15 @@ Json validate_image(const fs::path& file) {
     return {{"kind", "image"}, {"size", fmt::format("{} x {}", image.width, image.height)}};
 }
 
+Json validate_covariance(const fs::path& file) {
+    const MatrixCovariance covariance = read_covariance_csv(file);
+    return {{"kind", "covariance of a re-radiation matrix"},
+            {"emission", grid_text(covariance.emission)},
+            {"excitation", grid_text(covariance.excitation)},
+            {"directions", covariance.directions.cols()},
+            {"entries whose error is not known", covariance.independent.array().isNaN().count()}};
+}
+
 Json validate(const fs::path& file) {
     switch (file_kind(file)) {
     case FileKind::Scene:
@@ -198,6 +207,8 @@ Json validate(const fs::path& file) {
         return validate_study(file);
     case FileKind::Matrix:
         return validate_matrix(file);
+    case FileKind::Covariance:
+        return validate_covariance(file);
     case FileKind::Measurement:
         return validate_measurement(file);
     case FileKind::Spectrum:
@@ -228,10 +239,11 @@ void add_validate_command(Program& program, CommandContext& context) {
     Command command = program.add_command(
         "validate", "Checks any file that another command takes, and says what it holds");
     Command what = command.one_of_group("what");
-    what.option("FILE", options->file,
-                "scene, material, layers, recipe or study (TOML, XML), matrix (CSV, BFC, EXR), "
-                "measurement, spectrum (also JCAMP-DX, CGATS, IES TM-27), polygons, mesh (PLY, "
-                "OBJ), image (EXR, PNG) or OpenColorIO config (.ocio)");
+    what.option(
+        "FILE", options->file,
+        "scene, material, layers, recipe or study (TOML, XML), matrix (CSV, BFC, EXR), "
+        "covariance, measurement, spectrum (also JCAMP-DX, CGATS, IES TM-27), polygons, mesh (PLY, "
+        "OBJ), image (EXR, PNG) or OpenColorIO config (.ocio)");
     what.flag("--reference", options->reference,
               "print every key of scene and material files, as Markdown");
     command.footer("Examples:\n"

@@ -58,6 +58,8 @@ FileKind kind_of_table(const fs::path& file) {
         };
         if (is(0, "theta_i_deg"))
             return FileKind::Measurement;
+        if (is(0, "part") && is(1, "nm"))
+            return FileKind::Covariance;
         if (is(0, "name") && is(1, "illuminant"))
             return FileKind::Polygons;
         if (cells.size() == 3 && is(1, "n") && is(2, "k"))

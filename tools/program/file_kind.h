@@ -11,6 +11,7 @@ enum class FileKind {
     Recipe, ///< the input of `synth`
     Study,
     Matrix,
+    Covariance,  ///< of a matrix: the CSV of `fit --covariance`
     Measurement, ///< the CSV of `measure`
     Spectrum,
     ComplexIndex, ///< nm,n,k of a metal

@@ -62,6 +62,7 @@ FitSettings settings_from(const py::dict& given) {
     settings.solver.most_seconds = given["most_seconds"].cast<double>();
     settings.solver.most_iterations = given["most_iterations"].cast<int>();
     settings.threads = given["threads"].cast<int>();
+    settings.covariance = settings.model != FitModel::Matrix;
     if (!given["stack"].is_none())
         settings.stack = given["stack"].cast<LayerStack>();
     return settings;
@@ -134,6 +135,13 @@ void bind_fit(py::module_& module) {
             "matrix",
             [](const Fit& fit) { return std::make_shared<ReradiationMatrix>(fit.result.matrix); })
         .def_property_readonly("sigma", [](const Fit& fit) { return fit.result.sigma; })
+        .def_property_readonly("covariance",
+                               [](const Fit& fit) -> std::shared_ptr<MatrixCovariance> {
+                                   if (!fit.result.covariance)
+                                       return nullptr;
+                                   return std::make_shared<MatrixCovariance>(
+                                       *fit.result.covariance);
+                               })
         .def_property_readonly("masked",
                                [](const Fit& fit) -> Eigen::MatrixXd {
                                    const FitResult& result = fit.result;

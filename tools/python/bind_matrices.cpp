@@ -1,6 +1,5 @@
 #include "host/base/output_file.h"
 #include "host/report/svg.h"
-#include "host/spectral/colour/colour_report.h"
 #include "host/spectral/evidence/matrix_warnings.h"
 #include "host/spectral/evidence/plausible_matrix.h"
 #include "host/spectral/spectrum/rounded_grid.h"
@@ -14,7 +13,6 @@
 #include <pybind11/stl.h>
 
 #include <memory>
-#include <optional>
 #include <stdexcept>
 
 namespace py = pybind11;
@@ -87,18 +85,6 @@ std::string plot(const ReradiationMatrix& matrix, const std::string& title) {
                           .value = matrix.fluorescent_part()});
 }
 
-py::object colour(const ReradiationMatrix& matrix, const std::string& name, const Spectrum& light,
-                  std::optional<bool> e308, const ReradiationMatrix* against) {
-    ColourSum sum = ColourSum::Automatic;
-    if (e308)
-        sum = *e308 ? ColourSum::E308 : ColourSum::Bands;
-    const Lamp lamp{.name = name, .light = light};
-    ColourReport report = colour_report(matrix, lamp, sum);
-    if (against != nullptr)
-        compare_with(report, colour_report(*against, lamp, sum));
-    return python_value(colour_report_json(report));
-}
-
 /// None for ascending centres that are not equally spaced within their rounding.
 py::object rounded_grid(const Doubles& centres_nm, double rounding_nm) {
     std::vector<RoundedWavelength> centres;
@@ -148,7 +134,6 @@ void bind_matrices(py::module_& module) {
         .def("balance", &balance)
         .def("repaired", &repaired)
         .def("factorise", &factorise)
-        .def("colour", &colour)
         .def("plot", &plot);
 }
 

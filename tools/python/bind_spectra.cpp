@@ -51,9 +51,24 @@ std::string plot(const Spectrum& spectrum, const std::string& title, double from
                           {{"", nm, spectrum.at(nm)}});
 }
 
+/// Series are (label, x, y).
+std::string line_plot(const std::string& title, const std::string& x_label,
+                      const std::string& y_label, bool log_x, bool log_y, const py::list& given) {
+    std::vector<svg::Series> series;
+    for (const py::handle entry : given) {
+        const auto one = entry.cast<py::tuple>();
+        series.push_back({one[0].cast<std::string>(), to_vector(one[1].cast<Doubles>()),
+                          to_vector(one[2].cast<Doubles>())});
+    }
+    return svg::line_plot(
+        {.title = title, .x_label = x_label, .y_label = y_label, .log_x = log_x, .log_y = log_y},
+        series);
+}
+
 } // namespace
 
 void bind_spectra(py::module_& module) {
+    module.def("line_plot", &line_plot);
     py::class_<Spectrum>(module, "Spectrum")
         .def_static("constant", &Spectrum::constant)
         .def_static("table",

@@ -14,5 +14,6 @@ void bind_images(pybind11::module_& module);
 void bind_render(pybind11::module_& module);
 void bind_measure(pybind11::module_& module);
 void bind_fit(pybind11::module_& module);
+void bind_colour(pybind11::module_& module);
 
 } // namespace reradiant::python

@@ -59,5 +59,6 @@ PYBIND11_MODULE(_library, module) {
     bind_images(module);
     bind_render(module);
     bind_measure(module);
+    bind_colour(module);
     bind_fit(module);
 }

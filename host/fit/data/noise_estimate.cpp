@@ -99,6 +99,16 @@ double noise_of_mixed_differences(const Matrix& value, const Matrix& used) {
     return noise;
 }
 
+/// Noise of a single curve, as far as its differences tell.
+double noise_along(const Matrix& value, const Matrix& used) {
+    const Vector alone = Vector::Ones(1);
+    double noise = nothing_seen;
+    for (const int order : {2, 4, 6, 8})
+        noise = lower_estimate(
+            noise, noise_of_differences(value, used, difference(order), alone, fewest_of_a_column));
+    return noise;
+}
+
 double noise_of_few_columns(const Matrix& value, const Matrix& used) {
     const Vector alone = Vector::Ones(1);
     double noise = noise_of_proportion(value, used);
@@ -218,6 +228,12 @@ double estimated_noise(const Matrix& value, const Matrix& used) {
     double noise = noise_of_mixed_differences(seen, used);
     if (noise == nothing_seen)
         noise = noise_of_few_columns(seen, used);
+    return noise == nothing_seen ? 0.0 : noise;
+}
+
+double estimated_curve_noise(const Vector& value) {
+    const Matrix used = (value.array() == value.array()).cast<double>();
+    const double noise = noise_along((used.array() > 0.0).select(value, 0.0 * used), used);
     return noise == nothing_seen ? 0.0 : noise;
 }
 

@@ -35,4 +35,8 @@ EntryErrors entry_errors(const Eigen::MatrixXd& value, const Eigen::MatrixXd& si
 /// column is not of its neighbour. 0 where nothing can be looked at.
 double estimated_noise(const Eigen::MatrixXd& value, const Eigen::MatrixXd& used);
 
+/// Standard error of a smooth curve with the same noise everywhere (NaN: not measured), from the
+/// medians of its differences of second to eighth order; 0 where nothing can be looked at.
+double estimated_curve_noise(const Eigen::VectorXd& value);
+
 } // namespace reradiant

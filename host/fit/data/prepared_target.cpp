@@ -71,6 +71,16 @@ void read_diagonal(const BispectralData& data, const Matrix& sigma, PreparedTarg
             fmt::format("{} diagonal entries below 0 or above 1 were moved to that limit", moved));
 }
 
+/// Reflected light is brighter than fluorescence and its noise may be larger, which an estimate
+/// from the fluorescence does not see: where the diagonal clearly shows more, that is its error.
+void take_noise_of_diagonal(PreparedTarget& prepared) {
+    constexpr double clearly = 1.5; // an estimate from 20 differences is uncertain by a fifth
+    const double noise = estimated_curve_noise(prepared.diagonal);
+    for (double& sigma : prepared.diagonal_sigma)
+        if (noise > clearly * sigma)
+            sigma = noise;
+}
+
 /// Sets the photons that every column may emit: all, and those that the diagonal as measured has
 /// not taken.
 void set_photon_limits(PreparedTarget& prepared) {
@@ -164,6 +174,8 @@ PreparedTarget prepare_target(const BispectralData& data, const TargetSettings& 
     read_diagonal(data, errors.sigma, prepared);
     note_empty_columns(prepared, block.value, prepared.notes);
     set_photon_limits(prepared);
+    if (errors.is_estimated)
+        take_noise_of_diagonal(prepared);
     return prepared;
 }
 

@@ -1,6 +1,7 @@
 #include "host/fit/result/error_bands.h"
 
 #include "host/fit/solver/robust_loss.h"
+#include "host/spectral/evidence/scatter_line.h"
 #include "host/spectral/matrix/singular_values.h"
 
 #include <Eigen/QR>
@@ -80,19 +81,34 @@ Vector seen_residuals(const Matrix& residual, const Matrix& weights, const FitTa
     return seen;
 }
 
+/// Selects the diagonal from the entries in column-major order, (excitation bands, entries).
+Matrix diagonal_gain(const FitTarget& target) {
+    Matrix gain = Matrix::Zero(target.excitation.count, target.value.size());
+    for (int i = 0; i < target.excitation.count; ++i)
+        for (int o = 0; o < target.emission.count; ++o)
+            if (on_diagonal(target.emission, o, target.excitation, i))
+                gain(i, o + static_cast<Eigen::Index>(i) * target.emission.count) = 1.0;
+    return gain;
+}
+
 /// Replaces the covariance of an estimate gain * entries, gain = C J^T W, by what shared errors of
-/// the entries (in units of `unit`) make of it, with what has errors of its own beside them: the
-/// prior and the photon balances.
+/// the entries (in units of target.scale) make of it, with what has errors of its own beside them:
+/// the prior and the photon balances.
 void share_errors(const Matrix& entries, const Matrix& weights, const Matrix& beside,
-                  const SharedErrors& errors, double unit, double variance,
-                  Covariance& covariance) {
+                  const SharedErrors& errors, const FitTarget& target, double variance,
+                  bool with_diagonal, Covariance& covariance) {
     const Vector squared = weights.cwiseAbs2().reshaped();
     const Matrix pull = squared.asDiagonal() * (entries * covariance.root);
-    const Matrix of_data =
-        std::sqrt(variance) * unit * errors.root(covariance.root * pull.transpose() / variance);
+    const Matrix of_parameters = covariance.root * pull.transpose() / (variance * target.scale);
+    const Matrix gain =
+        with_diagonal ? stacked_rows(of_parameters, diagonal_gain(target)) : of_parameters;
+    const Matrix of_data = std::sqrt(variance) * errors.root(gain);
     const Matrix of_others = covariance.root * (beside * covariance.root).transpose();
-    covariance.root.resize(of_data.rows(), of_data.cols() + of_others.cols());
-    covariance.root << of_data, of_others;
+    const Eigen::Index parameters = of_others.rows(), diagonal = of_data.rows() - parameters;
+    covariance.diagonal_root = Matrix::Zero(diagonal, of_data.cols() + of_others.cols());
+    covariance.diagonal_root.leftCols(of_data.cols()) = of_data.bottomRows(diagonal);
+    covariance.root.resize(parameters, of_data.cols() + of_others.cols());
+    covariance.root << of_data.topRows(parameters), of_others;
 }
 
 std::vector<bool> firmly_at_zero(const TermModel& model, const Vector& parameters,
@@ -223,7 +239,7 @@ Covariance covariance_of(const Matrix& jacobian, const std::vector<bool>& held, 
 
 Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitTarget& target,
                          const PhotonPenalty& penalty, RobustLoss loss, bool noise_is_estimated,
-                         const SharedErrors* errors) {
+                         const SharedErrors* errors, bool with_diagonal) {
     const Matrix entries = model.entry_jacobian(fit.parameters);
     const Matrix residual =
         (model.matrix(fit.parameters) - target.value).cwiseProduct(target.weight);
@@ -255,8 +271,8 @@ Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitT
     }
     covariance.effective = numbers;
     if (errors != nullptr)
-        share_errors(entries, weights, stacked_rows(prior, balances), *errors, 1.0 / target.scale,
-                     variance_of(numbers), covariance);
+        share_errors(entries, weights, stacked_rows(prior, balances), *errors, target,
+                     variance_of(numbers), with_diagonal, covariance);
     return covariance;
 }
 

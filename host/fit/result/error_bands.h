@@ -17,6 +17,9 @@ struct Covariance {
     int rank = 0;           ///< directions that the data determine
     int free = 0;           ///< parameters that were not held
     double effective = 0.0; ///< numbers that the data determine rather than a prior
+    /// Errors of the data's diagonal that belong to the columns of `root`, (excitation bands,
+    /// rank), unit 1; empty: they are independent of the parameters'.
+    Eigen::MatrixXd diagonal_root = {};
 
     /// Standard errors of quantities with this Jacobian (quantities, parameters).
     Eigen::VectorXd sigma(const Eigen::MatrixXd& jacobian) const;
@@ -32,10 +35,11 @@ Covariance covariance_of(const Eigen::MatrixXd& jacobian, const std::vector<bool
 /// than two standard errors are held; those that are there by chance are not, so that their error
 /// bands are not empty. Active photon balances count as data, priors as they are: what the data do
 /// not determine is as uncertain as its prior. `free` and `rank` are of the data alone. With
-/// `errors` those of the entries are shared, not independent as the weights suppose (White 1980).
+/// `errors` those of the entries are shared, not independent as the weights suppose (White 1980);
+/// with_diagonal asks for `diagonal_root` then.
 Covariance covariance_at(const TermModel& model, const ModelFit& fit, const FitTarget& target,
                          const PhotonPenalty& penalty, RobustLoss loss, bool noise_is_estimated,
-                         const SharedErrors* errors);
+                         const SharedErrors* errors, bool with_diagonal = false);
 
 /// Normalised curves of a model and their errors (FitResult); unit 1/nm and 1.
 struct NormalisedCurves {

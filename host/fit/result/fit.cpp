@@ -7,6 +7,7 @@
 #include "host/fit/models/matrix_fit.h"
 #include "host/fit/result/error_bands.h"
 #include "host/fit/result/fit_checks.h"
+#include "host/fit/result/fit_covariance.h"
 #include "host/fit/stack/stack_inversion.h"
 #include "reradiant/error.h"
 
@@ -36,6 +37,9 @@ void check_model(const FitSettings& settings) {
             {},
             fmt::format("--bytes does not go with the model {}", fit_model_name(settings.model)),
             "leave it out or choose factors");
+    if (settings.covariance && settings.model == FitModel::Matrix)
+        throw_input_error({}, "--covariance does not go with the model matrix",
+                          "choose factors or gaussians");
     if (settings.rank && (*settings.rank < 1 || *settings.rank > most))
         throw_input_error(
             {}, fmt::format("--rank {} is out of range", *settings.rank),
@@ -67,9 +71,13 @@ void set_error_bands(const FittedCandidate& candidate, const PreparedTarget& pre
     const Matrix jacobian = model.entry_jacobian(parameters);
     const Covariance covariance =
         covariance_at(model, candidate.fit, prepared.target, *candidate.penalty, settings.loss,
-                      prepared.noise_is_estimated, prepared.errors ? &*prepared.errors : nullptr);
+                      prepared.noise_is_estimated, prepared.errors ? &*prepared.errors : nullptr,
+                      settings.covariance);
     result.sigma = prepared.target.scale *
                    covariance.sigma(jacobian).reshaped(result.sigma.rows(), result.sigma.cols());
+    if (settings.covariance)
+        result.covariance =
+            covariance_of_model(model, parameters, jacobian, covariance, prepared.target);
     // Errors are unknown where a whole column is missing: the model only bridges its neighbours.
     for (Eigen::Index i = 0; i < result.data.cols(); ++i)
         if ((result.data.col(i).array() != result.data.col(i).array()).all())
@@ -200,6 +208,8 @@ FitResult fit_bare(const SubstrateData& substrate, const FitSettings& settings,
     take_model(data, prepared, settings, begin, result);
     add_rounding(prepared, result);
     pass_diagonal(prepared, result);
+    if (settings.covariance)
+        finish_covariance(prepared, result);
     measure_errors(prepared, result);
     return result;
 }

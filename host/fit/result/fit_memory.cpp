@@ -18,9 +18,11 @@ double solver_bytes(double entries, double curves, const FitSettings& settings) 
         return entries * 400.0 * std::log2(entries + 2.0);
     // An entry depends on two numbers of a term's curves, and on all six of a Gaussian; covariances
     // are dense between all numbers, and of derivatives there are four copies on the way there.
+    // A kept covariance takes two more.
+    const double copies = settings.covariance ? 6.0 : 4.0;
     const double numbers = terms * (settings.model == FitModel::Factors ? curves : 6.0);
     return entries * terms * (settings.model == FitModel::Factors ? 2.0 : 6.0) * 40.0 +
-           8.0 * 3.0 * numbers * numbers + 8.0 * 4.0 * entries * numbers;
+           8.0 * 3.0 * numbers * numbers + 8.0 * copies * entries * numbers;
 }
 
 } // namespace

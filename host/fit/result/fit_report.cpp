@@ -1,6 +1,7 @@
 #include "host/fit/result/fit_report.h"
 
 #include "host/base/atomic_file.h"
+#include "host/fit/result/fit_swatches.h"
 #include "host/report/html.h"
 #include "host/report/svg.h"
 #include "host/spectral/evidence/scatter_line.h"
@@ -221,6 +222,7 @@ void write_fit_report(const std::filesystem::path& file, const BispectralData& d
     add_yields(page, result);
     add_stack(page, result);
     add_mask(page, data, result);
+    add_swatches(page, result);
     add_maps(page, result);
     add_curves(page, result);
     add_convergence(page, result);

@@ -1,5 +1,6 @@
 #include "host/spectral/colour/colour_report.h"
 
+#include "host/spectral/covariance/colour_intervals.h"
 #include "host/spectral/evidence/scatter_warnings.h"
 
 #include <cmath>
@@ -128,6 +129,8 @@ nlohmann::ordered_json colour_report_json(const ColourReport& report) {
         json["metamerism"] = *report.metamerism;
     if (!report.polygons.empty())
         json["polygons"] = polygons_json(report.polygons);
+    if (report.intervals)
+        json["intervals"] = intervals_json(*report.intervals);
     json.update({{"nm", colour.nm},
                  {"beta_T", colour.total},
                  {"beta_R", colour.reflected},

@@ -28,6 +28,20 @@ struct IndexedColour {
     std::optional<double> r457;         ///< of D65 and C
 };
 
+/// A `QuantityInterval` says how well a number or several of a colour are known: standard errors
+/// and the ends of 95 % intervals. An interval of a hue may end below 0 or above 360 degrees.
+struct QuantityInterval {
+    std::string name; ///< as in `colour --json`
+    std::vector<double> standard_error, low, high;
+};
+
+/// Intervals that follow from the uncertainty of a matrix, by two ways that agree where the colour
+/// is a smooth function over the uncertainty.
+struct ColourIntervals {
+    std::vector<QuantityInterval> linearised, drawn;
+    std::vector<QuantityInterval> uv_excluded_linearised, uv_excluded_drawn;
+};
+
 /// All that is said about a matrix under one lamp, for one observer.
 struct ColourReport : IndexedColour {
     std::string illuminant; ///< the lamp's name
@@ -38,6 +52,7 @@ struct ColourReport : IndexedColour {
     std::optional<ColourDifferences> differences; ///< to another matrix, when there is one
     std::optional<double> metamerism;             ///< of the two, from the first lamp to this
     std::vector<PolygonVerdict> polygons;
+    std::optional<ColourIntervals> intervals; ///< set_intervals, where a covariance is known
     std::vector<std::string> warnings;
 
     /// Emission band of the largest total radiance factor; NaN is never the largest.

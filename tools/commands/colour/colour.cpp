@@ -7,6 +7,7 @@
 #include "tools/commands/colour/colour_plot.h"
 #include "tools/commands/colour/colour_print.h"
 #include "tools/commands/colour/colour_table.h"
+#include "tools/commands/colour/covariance_options.h"
 #include "tools/commands/colour/seen_colours.h"
 #include "tools/program/command.h"
 #include "tools/program/outputs.h"
@@ -89,15 +90,18 @@ int polygon_verdict(const std::vector<SeenSample>& samples, const ColourOptions&
 
 int run_colour(ColourOptions options, const CommonOptions& common) {
     read_conditions(options);
+    options.seed = common.seed;
     std::vector<fs::path> inputs = sample_files(options);
     inputs.insert(inputs.end(), options.lamp_files.begin(), options.lamp_files.end());
-    inputs.insert(inputs.end(), {options.against, options.polygons});
+    inputs.insert(inputs.end(),
+                  {options.against, options.polygons, options.covariance, options.standard_errors});
     check_outputs(common,
                   {{"--plot", options.plot, {".svg"}},
                    {"--csv", options.csv, {".csv"}},
                    {"--report", options.report, {".html", ".htm"}}},
                   inputs);
-    const std::vector<SeenSample> samples = see_samples(options);
+    std::vector<SeenSample> samples = see_samples(options);
+    add_intervals(options, samples);
     for (const SeenSample& sample : samples)
         log_warnings(sample);
     print_samples(samples, options);
@@ -167,6 +171,7 @@ void add_colour_command(Program& program, CommandContext& context) {
         .excludes(e308);
     command.option("--against", options->against,
                    "differences from the colour of this sample, under each lamp");
+    add_covariance_options(command, *options);
     command.option("--polygons", options->polygons,
                    "CSV of chromaticity regions and luminance factors to test against, for "
                    "instance spectra/polygons/en-iso-20471.csv; exit with 3 when a sample passes "

@@ -16,13 +16,15 @@ struct ColourOptions {
     std::vector<std::filesystem::path> samples;
     std::vector<std::string> presets; ///< further samples, by name
     std::filesystem::path against, polygons, plot, csv, report;
-    std::string geometry; ///< may be empty
+    std::filesystem::path covariance, standard_errors; ///< of the one sample; one at most
+    std::string geometry;                              ///< may be empty
     std::vector<std::string> illuminants;
     std::vector<std::filesystem::path> lamp_files;
     std::vector<std::string> observer_names{"1931-2"};
     std::optional<double> uv_cut_nm;
     std::vector<Lamp> lamps; ///< of the names, and then of the files
     std::vector<Observer> observers;
+    unsigned seed = 0; ///< of drawn matrices
     bool e308 = false, plain = false, table = false;
 
     std::size_t sample_count() const { return samples.size() + presets.size(); }

@@ -1,7 +1,10 @@
 #include "tools/commands/colour/colour_print.h"
 
+#include "host/spectral/covariance/colour_intervals.h"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace reradiant {
@@ -36,6 +39,25 @@ void print_indices(const IndexedColour& of) {
     if (of.e313)
         fmt::print("  E313 whiteness {:.2f}, yellowness {:.2f}\n", of.e313->whiteness,
                    of.e313->yellowness);
+}
+
+/// Intervals by linearisation, and how far those of drawn matrices are from them.
+void print_intervals(const std::optional<ColourIntervals>& intervals) {
+    if (!intervals)
+        return;
+    double apart = 0.0; // standard errors
+    for (std::size_t k = 0; k < intervals->linearised.size(); ++k) {
+        const QuantityInterval &one = intervals->linearised[k], &other = intervals->drawn[k];
+        std::string line;
+        for (std::size_t c = 0; c < one.low.size(); ++c) {
+            line += fmt::format("{} {:.4f} to {:.4f}", c > 0 ? "," : "", one.low[c], one.high[c]);
+            for (const double off : {one.low[c] - other.low[c], one.high[c] - other.high[c]})
+                apart = std::max(apart, std::abs(off) / one.standard_error[c]);
+        }
+        fmt::print("  95 % of {}:{}\n", one.name, line);
+    }
+    fmt::print("  {} drawn matrices: ends within {:.2f} standard errors of these\n", drawn_matrices,
+               apart);
 }
 
 /// What ultraviolet light adds.
@@ -81,6 +103,7 @@ void print_colour(const ColourReport& report, const ColourOptions& options) {
         fmt::print("  largest total radiance factor {:.4f} at {:.6g} nm\n", colour.total[brightest],
                    colour.nm[brightest]);
     print_indices(report);
+    print_intervals(report.intervals);
     print_without_ultraviolet(report);
     print_differences(report, options.against.string());
     print_polygons(report);

@@ -36,6 +36,8 @@ const char* other_kind(FileKind kind) {
         return "a recipe of `synth`";
     case FileKind::Layers:
         return "a stack without a substrate";
+    case FileKind::Covariance:
+        return "the covariance of a matrix, which --covariance takes beside it";
     case FileKind::ComplexIndex:
         return "the complex index of a metal";
     case FileKind::Polygons:

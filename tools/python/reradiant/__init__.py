@@ -11,17 +11,20 @@ from ._compiled_part import load_compiled_part
 _library = load_compiled_part()
 
 from . import colour_science
+from .colours import colour
+from .covariance import Covariance
 from .errors import Error, InputError, RunError
-from .functions import colour, devices, fit, measure, presets, render, synth
+from .functions import devices, fit, measure, presets, render, synth
 from .image import Image
 from .matrix import Reradiation
+from .plot import Plot
 from .results import BispectralData, Fit, Measurement, Synthetic
 from .spectrum import Spectrum
 from .stack import Stack
 
 __version__ = _library.version
 __all__ = [
-    "BispectralData", "Error", "Fit", "Image", "InputError", "Measurement", "Reradiation", "RunError",
+    "BispectralData", "Covariance", "Error", "Fit", "Image", "InputError", "Measurement", "Plot", "Reradiation", "RunError",
     "Spectrum", "Stack", "Synthetic", "colour", "colour_science", "devices", "fit", "measure",
     "presets", "render", "synth",
 ]

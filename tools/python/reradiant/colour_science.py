@@ -25,6 +25,12 @@ def _colour() -> Any:
     return colour
 
 
+def is_object(value: Any, kind: str) -> bool:
+    """True for an object of that class of the package, or of one that inherits from it."""
+    return any(base.__name__ == kind and base.__module__.split(".")[0] == "colour"
+               for base in type(value).__mro__)
+
+
 def _raise_channel_limit() -> None:
     """OpenImageIO, by which colour-science reads images, refuses more than 1024 channels; a matrix
     of 49 x 49 bands has 1225."""
@@ -90,6 +96,17 @@ def from_distributions(distributions: Any, **options: Any) -> Reradiation:
         raise _checks.refuse("distributions", "has labels that are no wavelengths",
                              "label each signal by its excitation in nm") from None
     return Reradiation(distributions.values, distributions.wavelengths, excitation, **options)
+
+
+def radiance_factors(colour_of_lamp: Any) -> Any:
+    """A colour.MultiSpectralDistributions with the signals beta_T, beta_R and beta_L of what
+    `reradiant.colour` says of one lamp; NaN where the lamp is dark."""
+    if not isinstance(colour_of_lamp, dict) or "beta_T" not in colour_of_lamp:
+        raise _checks.refuse("colour_of_lamp", f"is a {type(colour_of_lamp).__name__} without radiance "
+                             "factors", "give an entry of what colour() returns")
+    names = ["beta_T", "beta_R", "beta_L"]
+    return _colour().MultiSpectralDistributions(
+        np.transpose(np.array([colour_of_lamp[name] for name in names], float)), colour_of_lamp["nm"], labels=names)
 
 
 def to_image(image: Image) -> Any:

@@ -4,7 +4,7 @@ the interpreter's lock is released while they work; warnings go to the logger "r
 from __future__ import annotations
 
 import math
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
+from typing import Any, List, Optional, Sequence
 
 from . import _checks, _library
 from ._plain import source
@@ -12,7 +12,6 @@ from .errors import RunError
 from .image import Image
 from .matrix import Reradiation
 from .results import BispectralData, Fit, Measurement, Synthetic
-from .spectrum import Spectrum
 from .stack import Stack
 
 MODELS = ["auto", "adding", "weidlich-wilkie", "walk"]
@@ -254,62 +253,6 @@ def _stack(stack: Any) -> Any:
     if not isinstance(stack, Stack):
         raise _checks.refuse("stack", f"is a {type(stack).__name__}", "give a Stack")
     return stack._stack
-
-
-def colour(matrix: Any, illuminant: Union[str, Sequence[str], Mapping[str, Spectrum]] = "D65", *,
-           e308: Optional[bool] = None, against: Any = None) -> Dict[str, Dict[str, Any]]:
-    """The colour of a matrix for the CIE 1931 observer: XYZ (perfect diffuser Y = 100), xy, Lab,
-    LCh, the indices of white and yellow that the lamp's name defines, with and without the
-    fluorescence that light below 420 nm excites, radiance factors and, with `against`, differences
-    from another matrix.
-
-    Parameters
-    ----------
-    matrix, against : file name or Reradiation
-    illuminant : str, list of str, or dict of name and Spectrum
-        CIE names (an unknown one lists them all), or light of your own.
-    e308 : bool
-        Sums over 1 nm (ASTM E308, E2022), or plain sums over the bands (ASTM E2152). By default the
-        latter, unless they misjudge the lamp itself by over 0.2 %; "sums" tells.
-
-    Returns
-    -------
-    dict
-        illuminant -> what `reradiant colour --json` says.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> nm = np.arange(380, 781, 10)
-    >>> grey = Reradiation(0.2 * np.eye(41), nm, nm)
-    >>> round(colour(grey)["D65"]["XYZ"][1], 6)
-    20.0
-    """
-    given = _matrix("matrix", matrix)
-    other = None if against is None else _matrix("against", against)._whole()
-    nanometres = None if e308 is None else _checks.flag("e308", e308)
-    return {name: given._whole().colour(name, light._spectrum, nanometres, other)
-            for name, light in _lights(illuminant).items()}
-
-
-def _lights(illuminant: Any) -> Dict[str, Spectrum]:
-    if isinstance(illuminant, Mapping):
-        for name, light in illuminant.items():
-            if not isinstance(light, Spectrum):
-                raise _checks.refuse(f"illuminant[{name!r}]", f"is a {type(light).__name__}",
-                                     "give a Spectrum")
-        return {_checks.text("illuminant", name): light for name, light in illuminant.items()}
-    names = [illuminant] if isinstance(illuminant, str) else illuminant
-    if not isinstance(names, (list, tuple)):
-        raise _checks.refuse("illuminant", f"is a {type(names).__name__}",
-                             "give a name, a list of names, or a dict of Spectrum")
-    return {_checks.text("illuminant", name): Spectrum.illuminant(name) for name in names}
-
-
-def _matrix(name: str, value: Any) -> Reradiation:
-    if isinstance(value, Reradiation):
-        return value
-    return Reradiation.read(_checks.path(name, value))
 
 
 def presets() -> List[str]:

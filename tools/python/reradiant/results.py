@@ -7,6 +7,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 import numpy as np
 
 from . import _checks, _library
+from .covariance import Covariance
 from .matrix import Reradiation, table_form
 
 
@@ -171,6 +172,16 @@ class Fit:
     def sigma(self) -> np.ndarray:
         """Standard error of every entry, (emission, excitation); NaN: unknown."""
         return self._fit.sigma
+
+    @property
+    def covariance(self) -> Covariance:
+        """What is uncertain about `matrix`: the noise of the data through the model, and of the
+        diagonal. InputError for the model "matrix", whose entries have `sigma` alone."""
+        found = self._fit.covariance
+        if found is None:
+            raise _checks.refuse("covariance", "is not known of the model matrix",
+                                 "fit factors or gaussians")
+        return Covariance._of(found)
 
     @property
     def masked(self) -> np.ndarray:
