@@ -125,9 +125,10 @@ TEST(ColourCoverage, IntervalsOfFitsHoldTheTruth) {
     }
 }
 
-// An estimate takes the noise for the same everywhere, which it is not: intervals are too narrow,
-// and the documents say so.
-TEST(ColourCoverage, UnevenNoiseThatIsNotToldMakesIntervalsNarrow) {
+// An estimate takes the noise of the fluorescence for the same everywhere, which it is not. That of
+// the diagonal, where it is largest, is looked at by itself: without that half of the intervals
+// miss.
+TEST(ColourCoverage, IntervalsHoldTheTruthWhereUnevenNoiseIsNotTold) {
     if (!test::is_full_run())
         GTEST_SKIP() << "a full run measures it";
     const std::vector<Lamp> lamps{lamp_from_text("D65"), lamp_from_text("A")};
@@ -136,7 +137,7 @@ TEST(ColourCoverage, UnevenNoiseThatIsNotToldMakesIntervalsNarrow) {
         count_set(seed, false, lamps, held);
     for (std::size_t k = 0; k < lamps.size(); ++k) {
         print(lamps[k].name + ", uneven noise that is not told", held[k]);
-        EXPECT_GE(held[k].percent(held[k].linearised), 60.0);
+        EXPECT_GE(held[k].percent(held[k].linearised), 85.0);
     }
 }
 
