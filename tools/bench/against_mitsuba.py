@@ -2,7 +2,7 @@
 """The reference study by Mitsuba 3 and by Reradiant, side by side: seconds to an error.
 
     against_mitsuba.py [--variant llvm_ad_spectral] [--surface smooth|rough] [--repeat 5]
-                       [--sampler NAME]
+                       [--sampler NAME] [--adaptive]
 
 Both render the same scene (sphere of paint beneath a varnish, ground, area light, constant
 environment; 512 x 512), each against a reference of its own, whose error is to be below 5 % of the
@@ -115,6 +115,8 @@ def run_ours(args, folder, spp, seed, out):
                str(spp), "--seed", str(seed), "--quiet", "--json", out + ".json"]
     if args.bands:
         command += ["--bands", args.bands]
+    if args.adaptive and spp < args.reference:
+        command.append("--adaptive")
     start = time.time()
     subprocess.run(command, check=True)
     return time.time() - start, read_rgb(out)
@@ -211,6 +213,7 @@ def main():
     parser.add_argument("--reference", type=int, default=4096, help="samples of the references")
     parser.add_argument("--sampler", help="of Mitsuba; without it the best of " + ", ".join(SAMPLERS))
     parser.add_argument("--bands", help="--bands of our render, FROM:TO:STEP")
+    parser.add_argument("--adaptive", action="store_true", help="our render is adaptive, its reference is not")
     parser.add_argument("--json", help="also write the figures here")
     parser.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--spp", type=int, help=argparse.SUPPRESS)
