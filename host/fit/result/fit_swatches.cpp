@@ -27,7 +27,7 @@ Spectrum ultraviolet_lamp() {
 ReradiationMatrix data_matrix(const FitResult& result) {
     ReradiationMatrix data = result.matrix;
     const auto& measured = result.data.array();
-    data.values = (measured == measured).select(result.data, result.matrix.values);
+    data.values = measured.isNaN().select(result.matrix.values, result.data);
     return data;
 }
 
