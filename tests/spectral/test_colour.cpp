@@ -189,7 +189,8 @@ TEST(Colour, ReflectanceFromRgbRoundTripsUnderD65) {
     const Spectrum d65 = illuminant_with_luminance("D65", 1.0);
     const ColourMatching& eye = cie_1931_2_degree();
     for (int k = 0; k < 125; ++k) {
-        const std::array<double, 3> rgb = {0.25 * (k % 5), 0.25 * (k / 5 % 5), 0.25 * (k / 25)};
+        const int red = k % 5, green = k / 5 % 5, blue = k / 25;
+        const std::array<double, 3> rgb = {0.25 * red, 0.25 * green, 0.25 * blue};
         const Spectrum reflectance = reflectance_from_rgb(rgb);
         EXPECT_GE(reflectance.minimum(300, 900), 0.0);
         EXPECT_LE(reflectance.maximum(300, 900), 1.0);
