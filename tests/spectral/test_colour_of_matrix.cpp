@@ -259,7 +259,7 @@ TEST(ColourOfMatrix, RawValuesCountAsTheyAre) {
     const ColourMatching& eye = cie_1931_2_degree();
     double white = 0.0;
     for (int band = 0; band < 43; ++band)
-        white += eye.y[static_cast<std::size_t>(10 * band)];
+        white += eye.y[10 * static_cast<std::size_t>(band)];
     EXPECT_NEAR(colour_under(matrix, "E").xyz[1], before - 25.0 * eye.y[190] / white, 1e-10);
 }
 
