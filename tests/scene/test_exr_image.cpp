@@ -39,13 +39,14 @@ protected:
     void put(const Channels& channels, const Imf::Header& given) {
         Imf::Header header = given;
         const Imath::Box2i& window = header.dataWindow();
-        const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
-        const auto height = static_cast<std::size_t>(window.max.y - window.min.y + 1);
+        const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+        const std::size_t pixels =
+            static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
         Imf::FrameBuffer frame;
         std::map<std::string, std::vector<float>> values;
         for (const auto& [name, value] : channels) {
             header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-            values[name].assign(width * height, value);
+            values[name].assign(pixels, value);
             frame.insert(name, Imf::Slice::Make(Imf::FLOAT, values[name].data(), window));
         }
         Imf::OutputFile output(file().c_str(), header);
