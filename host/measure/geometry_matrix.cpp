@@ -179,4 +179,15 @@ ReradiationMatrix geometry_matrix(const Material& material, const ViewingGeometr
     return matrix;
 }
 
+ReradiationMatrix geometry_matrix_of(const std::filesystem::path& file, const Material& material,
+                                     const ViewingGeometry& geometry) {
+    try {
+        return geometry_matrix(material, geometry);
+    } catch (const Error& error) {
+        if (error.kind() == Error::Kind::Input && error.position().file.empty())
+            throw_input_error({file.string()}, error.what());
+        throw;
+    }
+}
+
 } // namespace reradiant

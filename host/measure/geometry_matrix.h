@@ -3,6 +3,7 @@
 #include "reradiant/reradiation.h"
 #include "reradiant/scene.h"
 
+#include <filesystem>
 #include <string>
 
 namespace reradiant {
@@ -34,5 +35,8 @@ ViewingGeometry viewing_geometry(const std::string& text);
 /// mirror's reflection is part of no directional geometry. Input Error without a place for what
 /// the model cannot do, among it excluded specular light where the material is walked.
 ReradiationMatrix geometry_matrix(const Material& material, const ViewingGeometry& geometry);
+/// The same of a material that was read from a file, where an Error without a place is placed.
+ReradiationMatrix geometry_matrix_of(const std::filesystem::path& file, const Material& material,
+                                     const ViewingGeometry& geometry);
 
 } // namespace reradiant

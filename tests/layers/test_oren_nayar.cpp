@@ -78,7 +78,8 @@ TEST(OrenNayarBeneath, IsReciprocal) {
     }
 }
 
-/// With all of a diffuse flux returned as it was sent, the kernel is the substrate's own.
+/// With all of a diffuse flux returned as it was sent, the kernel is the substrate's own, as far as
+/// sums over 33 cosines are integrals.
 TEST(SeparableOrenNayar, ADiffuseReturnKeepsTheDirectionalAlbedo) {
     const CosineNodes nodes(33);
     Eigen::VectorXd share(nodes.size());

@@ -39,13 +39,7 @@ MatrixPointer matrix_of_material(const py::object& argument, const std::string& 
     return std::make_shared<ReradiationMatrix>(interruptible([&](StopFlag) {
         const Material material = source.table ? material_from_table(*source.table, source.file)
                                                : load_material(source.file);
-        try {
-            return geometry_matrix(material, seen);
-        } catch (const Error& error) {
-            if (error.kind() == Error::Kind::Input && error.position().file.empty())
-                throw_input_error({source.file.string()}, error.what());
-            throw;
-        }
+        return geometry_matrix_of(source.file, material, seen);
     }));
 }
 
@@ -87,10 +81,7 @@ ColourReport report_of(const ReradiationMatrix& matrix, ColourReporter& reporter
     if (question.covariance)
         set_intervals(report, matrix, *question.covariance, reporter.lamp(), question.sum,
                       question.seed);
-    if (report.observer == Observer::Cie1931Deg2) // the diagram that polygons are drawn in
-        for (const ColourPolygon& polygon : question.polygons)
-            if (polygon.illuminant == report.illuminant)
-                report.polygons.push_back({polygon, test_polygon(polygon, report.colour)});
+    test_polygons(report, question.polygons);
     return report;
 }
 
@@ -111,9 +102,7 @@ py::dict colour(const ReradiationMatrix& matrix, const py::dict& given) {
                 else
                     first_against = against;
             }
-            const std::string key = question.observers.size() == 1
-                                        ? lamp.name
-                                        : lamp.name + "/" + observer_name(observer);
+            const std::string key = report_key(report, question.observers.size());
             answers[py::str(key)] = python_value(colour_report_json(report));
             if (!first)
                 first = std::move(report);

@@ -224,26 +224,31 @@ void for_each_error(FilmSums film, const FilmLayout& layout, int width, int band
 } // namespace
 
 RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int width, int bands,
-                                bool adaptive) {
+                                std::vector<float>* deciding) {
+    if (deciding)
+        deciding->assign(pixels_of(film), 0.0f);
     if (!is_known(film))
         return {};
-    std::vector<ErrorSums> parts(parts_of(film, static_cast<std::size_t>(width)));
+    const auto columns = static_cast<std::size_t>(width);
+    std::vector<ErrorSums> parts(parts_of(film, columns));
     for_each_error(
-        film, layout, width, bands,
-        [&](std::size_t x, std::size_t y) { return !adaptive || !decides_where_samples_go(x, y); },
-        [&](std::size_t part, std::size_t, std::size_t, PixelError error) {
-            parts[part].add(error);
+        film, layout, width, bands, [](std::size_t, std::size_t) { return true; },
+        [&](std::size_t part, std::size_t x, std::size_t y, PixelError error) {
+            if (deciding && decides_where_samples_go(x, y))
+                (*deciding)[y * columns + x] = static_cast<float>(error.value);
+            else
+                parts[part].add(error);
         });
     return estimate_from(parts);
 }
 
 std::vector<float> deciding_errors(FilmSums film, const FilmLayout& layout, int width, int bands) {
+    const auto columns = static_cast<std::size_t>(width);
     std::vector<float> errors(pixels_of(film), 0.0f);
     if (is_known(film))
         for_each_error(film, layout, width, bands, decides_where_samples_go,
                        [&](std::size_t, std::size_t x, std::size_t y, PixelError error) {
-                           errors[y * static_cast<std::size_t>(width) + x] =
-                               static_cast<float>(error.value);
+                           errors[y * columns + x] = static_cast<float>(error.value);
                        });
     return errors;
 }

@@ -26,13 +26,13 @@ constexpr bool decides_where_samples_go(std::size_t x, std::size_t y) {
 /// d^2 / (ref^2 + 0.01 mean(ref)^2) with d from the difference of the even and the odd samples'
 /// halves, which has the variance of the mean, and what is to be expected of ref, given the pixel
 /// and its neighbours (likely_value.h). Nothing is known where a pixel has less than two samples,
-/// and no interval below two pixels. `adaptive`: the estimate is of the pixels alone that do not
-/// decide where samples go.
+/// and no interval below two pixels. `deciding`: of an adaptive render, where deciding_errors go;
+/// the estimate is then of the other pixels alone.
 RelmseEstimate estimated_relmse(FilmSums film, const FilmLayout& layout, int width, int bands,
-                                bool adaptive);
+                                std::vector<float>* deciding = nullptr);
 
 /// Returns what each pixel that decides where samples go adds to the relMSE times the number of
-/// pixels, 0 for the others and where nothing is known.
+/// pixels, 0 for the others and where nothing is known; half the work of an estimate.
 std::vector<float> deciding_errors(FilmSums film, const FilmLayout& layout, int width, int bands);
 
 } // namespace reradiant

@@ -28,8 +28,8 @@ std::uint32_t samples_before_adapting(const WavelengthPlan& plan);
 /// since few samples may have missed what is bright and rare. Where nothing fits the budget, the
 /// first tile that fits `most` is taken.
 ///
-/// `pixel_errors`: those of deciding_errors. Samples are numbered
-/// from `first_sample` on. The same film gives the same groups.
+/// `pixel_errors`: those of deciding_errors (host/render/film/error_estimate.h). Samples are
+/// numbered from `first_sample` on. The same film gives the same groups.
 std::vector<AdaptiveGroup> adaptive_groups(FilmSums film, std::span<const float> pixel_errors,
                                            int width, int height, std::uint32_t first_sample,
                                            std::uint64_t budget, std::uint64_t most);

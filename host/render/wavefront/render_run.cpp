@@ -2,6 +2,8 @@
 
 #include "host/render/film/error_estimate.h"
 
+#include <utility>
+
 namespace reradiant {
 
 namespace {
@@ -84,8 +86,9 @@ bool RenderRun::wants_estimate(bool observed) const {
 void RenderRun::estimate_error() {
     estimated_samples_ = state_.samples;
     wavefront_.film().read([&](FilmSums film) {
-        const RelmseEstimate estimate = estimated_relmse(
-            film, plan_.film, scene_.film.width, result_.plan.film.count, options_.adaptive);
+        const RelmseEstimate estimate =
+            estimated_relmse(film, plan_.film, scene_.film.width, result_.plan.film.count,
+                             options_.adaptive ? &errors_ : nullptr);
         state_.relmse = estimate.value;
         state_.relmse_low = estimate.low;
         state_.relmse_high = estimate.high;
@@ -93,11 +96,11 @@ void RenderRun::estimate_error() {
 }
 
 std::vector<float> RenderRun::pixel_errors() {
-    std::vector<float> errors;
-    wavefront_.film().read([&](FilmSums film) {
-        errors = deciding_errors(film, plan_.film, scene_.film.width, result_.plan.film.count);
-    });
-    return errors;
+    if (errors_.empty()) // there was no estimate of this film
+        wavefront_.film().read([&](FilmSums film) {
+            errors_ = deciding_errors(film, plan_.film, scene_.film.width, result_.plan.film.count);
+        });
+    return std::exchange(errors_, {});
 }
 
 SpectralImage RenderRun::image_so_far() const {
@@ -115,6 +118,7 @@ void RenderRun::after_pass(std::uint32_t samples, const RenderObserver& observe,
     state_.seconds = seconds();
     state_.relmse = state_.relmse_high = std::numeric_limits<double>::infinity();
     state_.relmse_low = 0.0;
+    errors_.clear(); // they are of the pass before
     if (wants_estimate(static_cast<bool>(observe)))
         estimate_error();
     result_.passes.push_back(state_);

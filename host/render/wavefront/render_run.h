@@ -27,7 +27,8 @@ public:
     double seconds() const;
     Wavefront& wavefront() { return wavefront_; }
     const RenderPlan& plan() const { return plan_; }
-    /// Returns what each pixel says of where the next samples of an adaptive render go.
+    /// Returns what each pixel says of where the next samples of an adaptive render go. To be asked
+    /// once after each pass.
     std::vector<float> pixel_errors();
 
     /// The film holds so many samples now. Estimates the error where it is time to, shows the pass
@@ -60,6 +61,7 @@ private:
     RenderProgress state_;
     /// Of the last estimate; the first one is made of four times as many as this.
     std::uint32_t estimated_samples_ = 2;
+    std::vector<float> errors_; ///< pixel_errors, where the last estimate found them too
     double seconds_before_ = 0.0, observing_seconds_ = 0.0;
 };
 

@@ -141,4 +141,17 @@ nlohmann::ordered_json colour_report_json(const ColourReport& report) {
     return json;
 }
 
+void test_polygons(ColourReport& report, const std::vector<ColourPolygon>& polygons) {
+    if (report.observer != Observer::Cie1931Deg2)
+        return;
+    for (const ColourPolygon& polygon : polygons)
+        if (polygon.illuminant == report.illuminant)
+            report.polygons.push_back({polygon, test_polygon(polygon, report.colour)});
+}
+
+std::string report_key(const ColourReport& report, std::size_t observers) {
+    return observers == 1 ? report.illuminant
+                          : report.illuminant + "/" + observer_name(report.observer);
+}
+
 } // namespace reradiant

@@ -92,4 +92,11 @@ void compare_with(ColourReport& report, const ColourReport& reference);
 /// Returns what `colour --json` writes for one illuminant.
 nlohmann::ordered_json colour_report_json(const ColourReport& report);
 
+/// Tests the polygons of the report's lamp. They are drawn in the diagram of the observer of 1931:
+/// for another one there are none.
+void test_polygons(ColourReport& report, const std::vector<ColourPolygon>& polygons);
+
+/// Returns the key of a report in JSON: LAMP, or LAMP/OBSERVER where there are several observers.
+std::string report_key(const ColourReport& report, std::size_t observers);
+
 } // namespace reradiant

@@ -65,17 +65,6 @@ ViewingGeometry asked_geometry(const ColourOptions& options) {
     }
 }
 
-ReradiationMatrix seen_material(const fs::path& file, const ViewingGeometry& geometry) {
-    const Material material = load_material(file);
-    try {
-        return geometry_matrix(material, geometry);
-    } catch (const Error& error) {
-        if (error.kind() == Error::Kind::Input && error.position().file.empty())
-            throw_input_error({file.string()}, error.what());
-        throw;
-    }
-}
-
 ReradiationMatrix declared_matrix(const fs::path& file, const std::string& asked) {
     ReradiationMatrix matrix = read_reradiation(file);
     warn_of_matrix(file.string(), matrix);
@@ -118,7 +107,7 @@ ReradiationMatrix read_matrix(const fs::path& file, const ColourOptions& options
         return declared_matrix(file, options.geometry);
     const ViewingGeometry geometry = asked_geometry(options);
     return kind == FileKind::Measurement ? MeasuredSample(file).seen_in(geometry)
-                                         : seen_material(file, geometry);
+                                         : geometry_matrix_of(file, load_material(file), geometry);
 }
 
 /// A geometry that changes nothing is a mistake.

@@ -68,15 +68,6 @@ void set_metamerism(SeenColour& test, const SeenColour& reference) {
                                               test.against->colour, test.report.colour);
 }
 
-/// Polygons are drawn in the diagram of the observer of 1931.
-void test_polygons(ColourReport& report, const std::vector<ColourPolygon>& polygons) {
-    if (report.observer != Observer::Cie1931Deg2)
-        return;
-    for (const ColourPolygon& polygon : polygons)
-        if (polygon.illuminant == report.illuminant)
-            report.polygons.push_back({polygon, test_polygon(polygon, report.colour)});
-}
-
 std::vector<SeenColour> see_sample(const ColourSample& sample,
                                    std::vector<ColourReporter>& reporters,
                                    const std::vector<ColourReport>& references,
@@ -134,9 +125,7 @@ std::vector<std::string> warnings_of(const SeenSample& sample) {
 }
 
 std::string key_of(const ColourReport& report, const ColourOptions& options) {
-    if (options.observers.size() == 1)
-        return report.illuminant;
-    return report.illuminant + "/" + observer_name(report.observer);
+    return report_key(report, options.observers.size());
 }
 
 } // namespace reradiant
