@@ -14,6 +14,11 @@ def tables_of(text):
     return [cells_of(block) for block in re.findall(r"(?:^\|[^\n]*\n)+", text + "\n", re.MULTILINE)]
 
 
+def only_table_of(text):
+    """The table of a text that holds one, without what is logged between its rows."""
+    return cells_of("".join(line + "\n" for line in text.splitlines() if line.startswith("|")))
+
+
 def print_table(heading, rows):
     for row in [heading, ["---"] * len(heading), *rows]:
         print("| " + " | ".join(row) + " |" if all(row) else "|" + "|".join(f" {c} " if c else " " for c in row) + "|")
@@ -21,7 +26,7 @@ def print_table(heading, rows):
 
 def model_errors(text):
     rows = []
-    for row in tables_of(text)[0][1:]:
+    for row in only_table_of(text)[1:]:
         preset, walk, adding_0, adding, _, nested_0, nested, _, _, largest = row
         rows.append([preset, walk, "not for it" if adding_0 == "refused" else f"{adding_0}, {adding}",
                      f"{nested_0}, {nested}", re.sub(r"[ *]*over[ *]*", "", largest.split("/")[2]).strip()])
@@ -29,8 +34,8 @@ def model_errors(text):
 
 
 def direction_errors(text):
-    heading, *rows = cells_of("".join(line + "\n" for line in text.splitlines() if line.startswith("|")))
-    print_table(heading, rows)  # without what is logged between the rows
+    heading, *rows = only_table_of(text)
+    print_table(heading, rows)
 
 
 def error_estimate(text):

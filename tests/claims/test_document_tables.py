@@ -19,6 +19,7 @@ class Makers(unittest.TestCase):
         printed = ("| preset | " + " | ".join("abcdefghi") + " |\n|" + " --- |" * 10 + "\n"
                    "| lacquer | 0.098 | -2.1 % | 3.6 % | 0.4 % | 58.3 % | 58.3 % | 9.0 % | 1.0 %, 2.0 % "
                    "| 0.111 / 0.110 / 1.002 **over** |\n"
+                   "[info] brass: something that is logged\n"
                    "| brass | 0.522 | refused | | | 208.7 % | 208.7 % | 9.9 % | 1.5 %, 2.5 % | 0.600 / - / 0.127 |\n")
         rows = made("model_errors", printed).splitlines()[2:]
         self.assertEqual(rows, ["| lacquer | 0.098 | -2.1 %, 3.6 % | 58.3 %, 58.3 % | 1.002 |",

@@ -124,7 +124,7 @@ int print_preset(const std::string& name) {
         const std::optional<Sums> own = measured(material, model, true);
         const std::optional<Sums> directions = measured(material, model, false);
         if (!own || !directions) {
-            row += "| refused | | | ";
+            row += "| refused | | ";
             largest += " / -";
             continue;
         }
