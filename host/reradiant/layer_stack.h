@@ -2,10 +2,13 @@
 
 #include "reradiant/spectrum.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 namespace reradiant {
+
+struct ReradiationMatrix;
 
 enum class Distribution { Blinn, Beckmann, Ggx };
 enum class Scattering { Multiple, Single };
@@ -38,6 +41,20 @@ struct Flakes {
     Conductor reflector;
 };
 
+/// A dye in a slab. Of the power that it absorbs at li it sends out the density Q li e(lo) /
+/// (integral over l > li of e(l) l dl) at lo > li, the same in all directions.
+struct SlabDye {
+    Spectrum absorption;        ///< per unit of thickness at concentration 1, natural logarithm
+    double concentration = 1.0; ///< multiplies `absorption`
+    Spectrum emission;          ///< e: relative radiant power per nm
+    double quantum_yield = 1.0; ///< Q
+    /// Instead of emission and yield: what part of the power absorbed in a band is sent out in each
+    /// band, within the same band on the diagonal. Column sums are at most 1.
+    std::shared_ptr<const ReradiationMatrix> shares;
+
+    bool absorbs() const { return concentration > 0.0 && !absorption.is_zero(); }
+};
+
 /// An interface and the slab beneath it.
 struct Layer {
     Spectrum ior = Spectrum::constant(1.5); ///< of the medium under the interface
@@ -50,18 +67,30 @@ struct Layer {
     double anisotropy = 0.0;         ///< mean cosine g of Henyey and Greenstein 1941
     std::optional<ThinFilm> film;    ///< on this interface
     std::optional<Flakes> flakes;    ///< at the lower end of this slab
+    std::vector<SlabDye> dyes = {};
 
     bool scatters() const { return thickness > 0.0 && !scattering_coefficient.is_zero(); }
+    bool is_dyed() const; ///< some dye absorbs light here
+};
+
+/// The lower face of a sheet: the interface from its last slab to the air.
+struct LowerFace {
+    Distribution distribution = Distribution::Ggx;
+    double alpha = 0.0; ///< as in Layer
+    Scattering scattering = Scattering::Multiple;
 };
 
 /// Interfaces and slabs from the air down. Empty: a bare substrate in air.
 struct LayerStack {
     std::vector<Layer> layers;
+    std::optional<LowerFace> lower_face = {}; ///< of a sheet in air; none: a substrate is beneath
 
+    bool is_sheet() const { return lower_face.has_value(); }
     bool is_smooth() const;     ///< every interface smooth
     bool is_dispersive() const; ///< some IOR depends on wavelength
     bool absorbs() const;
     bool scatters() const; ///< some slab scatters
+    bool is_dyed() const;  ///< some slab holds a dye that absorbs
     bool has_films() const;
     bool has_flakes() const;
     /// True when nothing about the stack depends on wavelength.

@@ -74,8 +74,9 @@ using Light =
 /// The emission spectrum of any light (radiance, intensity or irradiance).
 const Spectrum& light_spectrum(const Light& light);
 
-/// oren-nayar: Oren and Nayar 1994, qualitative form, sigma in radians.
-enum class SubstrateType { Lambert, OrenNayar, Conductor };
+/// oren-nayar: Oren and Nayar 1994, qualitative form, sigma in radians. none: the stack is a sheet
+/// in air and has a lower face (LayerStack).
+enum class SubstrateType { Lambert, OrenNayar, Conductor, None };
 
 /// A `Substrate` is the bottom of a stack. It has a reflectance alone, or a matrix, or
 /// fluorophores; a conductor has none of them. Pigments by Kubelka-Munk arrive here as reflectance
@@ -150,6 +151,8 @@ struct Material {
     LayerStack stack; ///< air side first; may be empty (bare substrate)
     Substrate substrate;
     SourcePosition position; ///< place of its table, for errors; empty for a material made in code
+
+    bool is_fluorescent() const { return substrate.is_fluorescent() || stack.is_dyed(); }
 };
 
 struct SphereShape {

@@ -40,10 +40,11 @@ struct SurfaceValues {
 /// A slab at one wavelength: the medium between two surfaces. Depths are those of normal passage.
 struct SlabValues {
     double ior = 1.5;
-    double tau = 0.0;            ///< optical depth of absorption
+    double tau = 0.0;            ///< optical depth of absorption, by dyes and all else
     double tau_scattering = 0.0; ///< optical depth of scattering
     double anisotropy = 0.0;     ///< mean cosine g of Henyey and Greenstein 1941
     bool may_scatter = false;    ///< at some wavelength, if not at this one
+    double tau_dyes = 0.0;       ///< part of `tau` by dyes, which may send it out again
 
     double depth() const { return tau + tau_scattering; }
     bool scatters() const { return tau_scattering > 0.0; }
@@ -73,7 +74,9 @@ using StackElement = std::variant<SurfaceValues, SlabValues, FlakesValues, Diffu
 /// A stack at one wavelength as every model reads it: elements from the air down. Each interface is
 /// followed by the slab beneath it and that by the slab's flakes, if it has any; which elements
 /// there are does not depend on wavelength. The list may end in a substrate, which is a diffuse one
-/// or a conductor; without one it is the stack alone.
+/// or a conductor; without one it is the stack alone, and a sheet ends in its lower face, an
+/// interface to the air. What dyes send out couples wavelengths, like a substrate's matrix; it
+/// stands elsewhere (host/layers/stack/slab_emission.h).
 using StackElements = std::vector<StackElement>;
 
 /// Returns the stack at a wavelength, without a substrate.

@@ -14,6 +14,8 @@ const char* substrate_name(SubstrateType type) {
         return "oren-nayar";
     case SubstrateType::Conductor:
         return "conductor";
+    case SubstrateType::None:
+        return "none";
     case SubstrateType::Lambert:
         break;
     }

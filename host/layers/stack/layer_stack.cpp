@@ -20,8 +20,14 @@ int kernel_distribution(Distribution distribution) {
     return MICROFACET_GGX;
 }
 
+bool Layer::is_dyed() const {
+    return thickness > 0.0 && std::ranges::any_of(dyes, &SlabDye::absorbs);
+}
+
 bool LayerStack::is_smooth() const {
-    return std::all_of(layers.begin(), layers.end(), [](const Layer& l) { return l.alpha == 0.0; });
+    return std::all_of(layers.begin(), layers.end(),
+                       [](const Layer& l) { return l.alpha == 0.0; }) &&
+           !(lower_face && lower_face->alpha > 0.0);
 }
 
 bool LayerStack::is_dispersive() const {
@@ -30,12 +36,17 @@ bool LayerStack::is_dispersive() const {
 }
 
 bool LayerStack::absorbs() const {
-    return std::any_of(layers.begin(), layers.end(),
-                       [](const Layer& l) { return l.thickness > 0.0 && !l.absorption.is_zero(); });
+    return std::any_of(layers.begin(), layers.end(), [](const Layer& l) {
+        return l.is_dyed() || (l.thickness > 0.0 && !l.absorption.is_zero());
+    });
 }
 
 bool LayerStack::scatters() const {
     return std::any_of(layers.begin(), layers.end(), [](const Layer& l) { return l.scatters(); });
+}
+
+bool LayerStack::is_dyed() const {
+    return std::ranges::any_of(layers, &Layer::is_dyed);
 }
 
 bool LayerStack::has_films() const {
@@ -51,7 +62,7 @@ bool LayerStack::has_flakes() const {
 bool LayerStack::is_constant() const {
     return std::all_of(layers.begin(), layers.end(), [](const Layer& l) {
         return l.ior.is_constant() && l.absorption.is_constant() &&
-               l.scattering_coefficient.is_constant() && !l.film && !l.flakes;
+               l.scattering_coefficient.is_constant() && !l.film && !l.flakes && !l.is_dyed();
     });
 }
 

@@ -39,6 +39,8 @@ void check_surface(const SurfaceValues& surface, const std::string& whose) {
 void check_slab(const SlabValues& slab, const std::string& whose) {
     check(slab.tau >= 0.0, whose, "optical depth", slab.tau,
           "absorption and thickness must not be negative");
+    check(slab.tau_dyes >= 0.0 && slab.tau_dyes <= slab.tau, whose, "optical depth of dyes",
+          slab.tau_dyes, "concentration and absorption must not be negative");
     check(slab.tau_scattering >= 0.0, whose, "scattering depth", slab.tau_scattering,
           "scattering coefficient and thickness must not be negative");
     check(std::fabs(slab.anisotropy) < 1.0, whose, "anisotropy", slab.anisotropy,

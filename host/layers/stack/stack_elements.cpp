@@ -21,9 +21,23 @@ SurfaceValues interface_at(const Layer& layer, double wavelength_nm, double ior_
 }
 
 SlabValues slab_at(const Layer& layer, double wavelength_nm, double ior) {
-    return {ior, layer.absorption(wavelength_nm) * layer.thickness,
-            layer.scattering_coefficient(wavelength_nm) * layer.thickness, layer.anisotropy,
-            layer.scatters()};
+    double dyes = 0.0;
+    for (const SlabDye& dye : layer.dyes)
+        dyes += dye.concentration * dye.absorption(wavelength_nm) * layer.thickness;
+    return {.ior = ior,
+            .tau = layer.absorption(wavelength_nm) * layer.thickness + dyes,
+            .tau_scattering = layer.scattering_coefficient(wavelength_nm) * layer.thickness,
+            .anisotropy = layer.anisotropy,
+            .may_scatter = layer.scatters(),
+            .tau_dyes = dyes};
+}
+
+SurfaceValues lower_face_at(const LowerFace& face, double ior_above) {
+    return {.ior_above = ior_above,
+            .ior_below = 1.0,
+            .distribution = face.distribution,
+            .alpha = face.alpha,
+            .scattering = face.scattering};
 }
 
 bool is_substrate(const StackElement& element) {
@@ -51,6 +65,8 @@ StackElements stack_at(const LayerStack& stack, double wavelength_nm) {
             elements.push_back(FlakesValues{
                 layer.flakes->coverage, conductor_at(layer.flakes->reflector, wavelength_nm, ior)});
     }
+    if (stack.lower_face)
+        elements.push_back(lower_face_at(*stack.lower_face, ior));
     return elements;
 }
 
