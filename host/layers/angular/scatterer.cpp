@@ -47,14 +47,16 @@ Eigen::MatrixXd shares_between(const InterfaceOperator& op, const Eigen::VectorX
 
 Scatterer scatterer_of(const SurfaceValues& interface) {
     const auto op = operator_of(interface);
-    AngularGrid thinner = op->above, denser = op->below;
-    denser.ior = std::max(interface.ior_above, interface.ior_below) /
-                 std::min(interface.ior_above, interface.ior_below);
+    const double ratio = std::max(interface.ior_above, interface.ior_below) /
+                         std::min(interface.ior_above, interface.ior_below);
+    const AngularGrid& thinner = op->above;
+    const AngularGrid denser =
+        make_angular_grid(ratio, std::sqrt((ratio - 1.0) * (ratio + 1.0)) / ratio, interface_cells);
     Eigen::VectorXd etendue(thinner.cells() + denser.cells());
     etendue << thinner.etendue(), denser.etendue();
     const Eigen::MatrixXd shares = shares_between(*op, etendue);
     const Eigen::Index n = op->above.cells();
-    Scatterer rough{op->above, op->below, shares, interface.scattering == Scattering::Single};
+    Scatterer rough{thinner, denser, shares, interface.scattering == Scattering::Single};
     if (interface.ior_below < interface.ior_above) {
         // the operator is stored thinner side first; the surface looks alike from below
         std::swap(rough.upper, rough.lower);
