@@ -2,8 +2,6 @@
 
 #include "reradiant/stack_model.h"
 
-#include <fmt/core.h>
-
 namespace reradiant {
 
 std::optional<std::string> adding_refusal(const Material& material) {
@@ -81,18 +79,20 @@ ModelChoice choose_by_itself(const Material& material, ModelUse use) {
                                : "auto: adding, every interreflection over the diffuse substrate"};
 }
 
-/// Refuses pictures of dyes in layers, and of sheets, by the walk: that of the renderer knows
-/// neither yet.
-void refuse_pictures_by_walk(const Material& material, const ModelChoice& choice, ModelUse use) {
-    if (use == ModelUse::Measure || choice.model != Model::Walk ||
-        !weidlich_wilkie_refusal(material))
+/// Refuses pictures that the renderer cannot make yet: of sheets, and of dyes in layers by its
+/// walk.
+void refuse_pictures(const Material& material, const ModelChoice& choice, ModelUse use) {
+    if (use == ModelUse::Measure)
         return;
-    throw_input_error(material.position,
-                      fmt::format("the renderer's walk does not know {} yet{}",
-                                  material.stack.is_dyed() ? "dyes in layers" : "sheets",
-                                  choice.reason.empty() ? "" : " (" + choice.reason + ")"),
-                      "the model adding renders them without flakes, conductors, Oren-Nayar "
-                      "substrates and films on rough interfaces; `measure` walks them all");
+    const std::string because = choice.reason.empty() ? "" : " (" + choice.reason + ")";
+    if (material.stack.is_sheet())
+        throw_input_error(material.position, "the renderer does not know sheets yet",
+                          "`reradiant measure` says what a sheet reflects and transmits");
+    if (material.stack.is_dyed() && choice.model == Model::Walk)
+        throw_input_error(
+            material.position, "the renderer's walk does not know dyes in layers yet" + because,
+            "the model adding renders them without flakes, conductors, Oren-Nayar substrates and "
+            "films on rough interfaces; `reradiant measure` walks them all");
 }
 
 } // namespace
@@ -103,7 +103,7 @@ ModelChoice choose_model(const Material& material, Model requested, ModelUse use
         throw_input_error(material.position, refusal->reason, refusal->remedy);
     ModelChoice choice =
         model == Model::Auto ? choose_by_itself(material, use) : ModelChoice{model, ""};
-    refuse_pictures_by_walk(material, choice, use);
+    refuse_pictures(material, choice, use);
     return choice;
 }
 

@@ -43,7 +43,7 @@ std::optional<std::string> device_walk_refusal(const Material& material);
 /// the walk is taken, which is exact and slower. A picture of a bare conductor, of which
 /// weidlich-wilkie is the plain reflection by its facets, or of what the device's walk cannot do,
 /// is given to weidlich-wilkie; the reason says so. Input Error for a model, when named, on a
-/// material that it cannot do, and for pictures of dyes in layers and of sheets by the walk.
+/// material that it cannot do, for pictures of sheets, and for those of dyes in layers by the walk.
 ModelChoice choose_model(const Material& material, Model requested, ModelUse use);
 
 } // namespace reradiant
