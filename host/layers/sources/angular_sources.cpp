@@ -7,6 +7,7 @@
 #include "host/layers/sources/flux_section.h"
 #include "host/layers/sources/ray_stack.h"
 #include "host/layers/stack/directions.h"
+#include "host/layers/stack/stack_variants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,14 +102,6 @@ FluxSection dyed_section(const SlabValues& slab, const AngularGrid& grid, const 
     for (int cell = 1; cell < cells.count(); ++cell)
         whole = section_above(whole, cell_section(cell));
     return whole;
-}
-
-StackElements upside_down(const StackElements& stack) {
-    StackElements flipped(stack.rbegin(), stack.rend());
-    for (StackElement& element : flipped)
-        if (auto* surface = std::get_if<SurfaceValues>(&element))
-            std::swap(surface->ior_above, surface->ior_below);
-    return flipped;
 }
 
 bool is_rough(const StackElement& element) {
