@@ -54,6 +54,9 @@ public:
     /// Change of the directional-hemispherical shares with the last halving of the cells, relative
     /// to the largest: a bound of their error.
     double error() const { return error_; }
+    /// True where nothing is sent out in a band below the one that excites it.
+    bool shifts_up() const { return fine().shifts_up(); }
+    const StackCells& fine_cells() const { return levels_.back().cells; }
     /// The series with the finest cells, and with twice as thick ones.
     const ReEmission& fine() const { return *levels_.back().all; }
     const ReEmission& coarse() const { return *(levels_.end() - 2)->all; }

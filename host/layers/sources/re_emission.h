@@ -25,6 +25,8 @@ public:
     ReEmission(std::vector<std::shared_ptr<const SourceTransport>> by_band, const StackCells& cells,
                const std::vector<Eigen::MatrixXd>& slabs, const Eigen::MatrixXd& substrate);
 
+    /// True where nothing is sent out in a band below the one that excites it.
+    bool shifts_up() const { return stokes_only_; }
     Eigen::Index bands() const { return static_cast<Eigen::Index>(by_band_.size()); }
     const SourceTransport& at(Eigen::Index band) const {
         return *by_band_[static_cast<std::size_t>(band)];
