@@ -37,10 +37,10 @@ std::map<Directions, DirectionalMatrix> by_directions(const Measurement& measure
         }
         const int o = measurement.bands.band_of(row.lambda_o_nm);
         const int i = measurement.bands.band_of(row.lambda_i_nm);
-        if (row.part == MeasuredPart::Diffuse)
-            entry.diffuse(o, i) = row.value;
-        else
+        if (row.part == MeasuredPart::Specular)
             entry.specular(o) = row.value;
+        else
+            entry.diffuse(o, i) += row.value; // of the substrate and of dyes in layers
     }
     return result;
 }
@@ -153,6 +153,10 @@ std::vector<double> polar_angles() {
 
 CellMeasurement measure_cell(const Material& material, const StudyMeasuring& measuring,
                              const std::vector<NamedIlluminant>& illuminants) {
+    if (material.stack.is_sheet())
+        throw_input_error(material.position,
+                          "a study measures what is reflected, and a sheet transmits light as well",
+                          "leave [measure] out, or use `reradiant measure` for what a sheet does");
     CellMeasurement cell;
     MeasureRequest request;
     request.model = measuring.model;

@@ -36,7 +36,9 @@ struct PolarCurve {
 struct CellMeasurement {
     WavelengthGrid bands;
     std::vector<SeenColour> colours;
-    Eigen::MatrixXd matrix; ///< directional-hemispherical at the first theta_i, per-band, diffuse
+    /// Directional-hemispherical at the first theta_i, per-band: what the substrate and dyes in
+    /// layers send back.
+    Eigen::MatrixXd matrix;
     std::vector<double> specular; ///< likewise, of light that never reached the substrate
     std::vector<PolarCurve> polar;
     std::vector<std::string> notes;
