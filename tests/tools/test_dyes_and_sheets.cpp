@@ -168,11 +168,11 @@ TEST_F(DyesAndSheets, StudiesSweepDyesAndRefuseToMeasureSheets) {
         study("dyed.toml", "parameter = \"concentration\"\nlayer = 0\nfluorophore = 0");
     EXPECT_EQ(swept.exit_code, 0) << swept.errors;
     EXPECT_NE(file_bytes(folder / "out/table.csv").find("concentration"), std::string::npos);
-    const ProgramResult refused =
-        study("sheet.toml", "key = \"material.sample.layer.0.fluorophores.0.concentration\"");
-    EXPECT_NE(refused.exit_code, 0);
-    EXPECT_NE(refused.errors.find("a study measures what is reflected"), std::string::npos)
-        << refused.errors;
+    put("study.toml", "[study]\nmaterial = \"sheet.toml\"\n[measure]\n[[sweep]]\n"
+                      "key = \"material.sample.layer.0.fluorophores.0.concentration\"\n"
+                      "values = [0, 1]\n");
+    expect_failure(2, "study study.toml -o other",
+                   "study.toml:3:2: a study measures what is reflected");
 }
 
 /// The numbers of a stack stand for the files that its dyes name.
