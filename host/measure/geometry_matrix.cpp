@@ -55,8 +55,9 @@ void require_above_horizon(const std::string& text, double theta_i, double theta
     const auto is_above = [](double theta) { return theta >= 0.0 && theta < 90.0; };
     if (is_above(theta_i) && theta_o > 90.0 && theta_o <= 180.0)
         throw std::invalid_argument(
-            fmt::format("'{}' looks at the far side, from {:g} degrees: the materials here are "
-                        "opaque and transmit nothing; thetas are from 0 to below 90",
+            fmt::format("'{}' looks at the far side, from {:g} degrees: colours are of what is "
+                        "reflected, `measure` has what sheets transmit; thetas are from 0 to "
+                        "below 90",
                         text, theta_o));
     for (const double theta : {theta_i, theta_o})
         if (!is_above(theta))
@@ -109,6 +110,23 @@ Eigen::MatrixXd by_closed_model(const Material& material, const SubstrateValues&
     return values;
 }
 
+/// Refuses what is not computed for dyes in layers and for sheets.
+void refuse_unknown(const Material& material, const ViewingGeometry& geometry, Model model) {
+    if (geometry.kind == Kind::HemisphericalDirectional && material.stack.is_dyed())
+        throw_input_error(material.position,
+                          fmt::format("the geometry {} is not known for dyes in layers: it is "
+                                      "computed as 8/d with excitation and emission exchanged, "
+                                      "and only those of substrates are",
+                                      geometry.name),
+                          "ask for --geometry 8/d or 45/0");
+    if (geometry.kind != Kind::Directional && material.stack.is_sheet() && model == Model::Walk)
+        throw_input_error(
+            material.position,
+            fmt::format("the geometry {} is not known for a sheet that is walked", geometry.name),
+            "ask for --geometry 45/0, or give a sheet without flakes and without films on rough "
+            "interfaces");
+}
+
 Eigen::MatrixXd by_walk(const Material& material, const SubstrateValues& substrate,
                         const WavelengthGrid& bands, const ViewingGeometry& geometry) {
     if (!geometry.specular_included)
@@ -158,8 +176,9 @@ ViewingGeometry viewing_geometry(const std::string& text) {
 
 ReradiationMatrix geometry_matrix(const Material& material, const ViewingGeometry& geometry) {
     const ModelChoice choice = choose_model(material, Model::Auto, ModelUse::Measure);
+    refuse_unknown(material, geometry, choice.model);
     const WavelengthGrid bands = measured_bands(material, {});
-    check_measure_memory(bands, material.substrate.is_fluorescent(), {});
+    check_measure_memory(bands, material.is_fluorescent(), {});
     SubstrateValues substrate = measured_substrate(material.substrate, bands);
     // Reciprocity: light that comes from everywhere and is seen at 8 degrees is light that comes
     // at 8 degrees and goes everywhere, with excitation and emission exchanged.

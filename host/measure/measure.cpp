@@ -6,6 +6,7 @@
 #include "host/measure/measure_substrate.h"
 #include "host/measure/walk_measurement.h"
 #include "host/scene/model/closed_model.h"
+#include "host/scene/model/matrix_grids.h"
 #include "host/scene/model/model_choice.h"
 #include "host/scene/model/substrate.h"
 #include "reradiant/error.h"
@@ -127,14 +128,19 @@ void add_notes(Measurement& measurement, const LayeredBsdf& surface,
 WavelengthGrid measured_bands(const Material& material, const MeasureRequest& request) {
     if (request.bands)
         return *request.bands;
-    if (const auto own = material.substrate.own_grid())
+    const std::vector<const ReradiationMatrix*> matrices = matrices_of(material);
+    if (const auto own = common_grid(matrices))
         return *own;
-    if (material.substrate.matrix) {
+    if (!matrices.empty()) {
         throw_input_error({},
-                          "the matrix's emission and excitation wavelengths share no common grid",
+                          matrices.size() == 1
+                              ? "the matrix's emission and excitation wavelengths share no common "
+                                "grid"
+                              : "the wavelengths of the substrate's matrix and of the layers' "
+                                "shares share no common grid",
                           "name the bands to measure on: --bands FROM:TO:STEP");
     }
-    return grid_from_range(material.substrate.is_fluorescent() ? 300.0 : 380.0, 780.0, 10.0);
+    return grid_from_range(material.is_fluorescent() ? 300.0 : 380.0, 780.0, 10.0);
 }
 
 Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& substrate,
@@ -187,7 +193,7 @@ Measurement measure_material(const Material& material, const MeasureRequest& req
     resolved.model = choice.model;
     check_request(resolved);
     const WavelengthGrid bands = measured_bands(material, request);
-    check_measure_memory(bands, material.substrate.is_fluorescent(), request);
+    check_measure_memory(bands, material.is_fluorescent(), request);
     Measurement measurement = measure_substrate(
         material.stack, measured_substrate(material.substrate, bands), bands, resolved);
     if (!choice.reason.empty())

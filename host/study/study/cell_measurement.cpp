@@ -37,10 +37,10 @@ std::map<Directions, DirectionalMatrix> by_directions(const Measurement& measure
         }
         const int o = measurement.bands.band_of(row.lambda_o_nm);
         const int i = measurement.bands.band_of(row.lambda_i_nm);
-        if (row.part == MeasuredPart::Diffuse)
-            entry.diffuse(o, i) = row.value;
-        else
+        if (row.part == MeasuredPart::Specular)
             entry.specular(o) = row.value;
+        else
+            entry.diffuse(o, i) += row.value; // of the substrate and of dyes in layers
     }
     return result;
 }
@@ -151,8 +151,16 @@ std::vector<double> polar_angles() {
 
 } // namespace
 
+void refuse_measured_sheet(const Material& material, const SourcePosition& at) {
+    if (material.stack.is_sheet())
+        throw_input_error(at,
+                          "a study measures what is reflected, and a sheet transmits light as well",
+                          "leave [measure] out, or use `reradiant measure` for what a sheet does");
+}
+
 CellMeasurement measure_cell(const Material& material, const StudyMeasuring& measuring,
                              const std::vector<NamedIlluminant>& illuminants) {
+    refuse_measured_sheet(material, material.position);
     CellMeasurement cell;
     MeasureRequest request;
     request.model = measuring.model;
