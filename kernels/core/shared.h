@@ -196,7 +196,10 @@ typedef struct {
     shared_uint dyes;  ///< [channel][phase][node][lane], what light brings to dyes and substrate
                        ///< (gather_dyes.h) instead of `transmission` and the substrate's operator;
                        ///< NO_INDEX: no slab is dyed
-    shared_uint dye_coupling; ///< [phase][channel][excitation lane][channel][emission lane]
+    shared_uint dye_coupling; ///< [phase], within lanes [channel sent][channel taken][lane], then
+                              ///< of each term [channel][lane] what is taken, what is sent; or,
+                              ///< with no terms, [channel][lane] taken [channel][lane] sent
+    shared_uint dye_terms;    ///< 0: entry by entry
     shared_uint dye_channels;
     shared_uint dyes_shift_up; ///< 1: nothing is sent out below the wavelength that excites it
     shared_uint other_side;    ///< of a sheet: the same as seen from below; NO_INDEX: it is opaque
@@ -206,7 +209,7 @@ typedef struct {
     shared_uint through_own, through_far; ///< grey or spectral: product form of what else goes
                                           ///< through, for directions on each side
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 148);
+ASSERT_SIZE(MaterialRecord, 152);
 
 /// Extinctions that distances in a scattering slab are sampled with (walk.h).
 #define WALK_REFERENCES 4

@@ -296,8 +296,11 @@ private:
         plan_.features.dyes = true;
         plan_.features.dye_channels = plan_.dyes->channels;
         const std::uint64_t sides = material_.stack.is_sheet() ? 2 : 1;
-        plan_.counts.floats +=
-            sides * channels * spectral_nodes() + channels * channels * lanes_ * row_;
+        plan_.counts.floats += sides * channels * spectral_nodes() +
+                               channels *
+                                   (channels * (plan_.dyes->terms > 0 ? 1 : lanes_) +
+                                    2 * static_cast<std::uint64_t>(plan_.dyes->terms)) *
+                                   row_;
     }
 
     /// True where light is spread on its way to the substrate at the middle of the spectrum, for
