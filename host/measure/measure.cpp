@@ -4,98 +4,90 @@
 #include "host/layers/stack/directions.h"
 #include "host/measure/measure_memory.h"
 #include "host/measure/measure_substrate.h"
+#include "host/measure/row_writer.h"
 #include "host/measure/walk_measurement.h"
 #include "host/scene/model/closed_model.h"
 #include "host/scene/model/model_choice.h"
 #include "host/scene/model/substrate.h"
 #include "reradiant/error.h"
+#include "reradiant/reradiation.h"
 
 #include <Eigen/Core>
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace reradiant {
 
 namespace {
 
-void check_request(const MeasureRequest& request) {
-    const auto check = [](const std::vector<double>& angles, const char* name, double from,
-                          double to, const char* remedy) {
-        if (angles.empty())
-            throw_input_error({}, fmt::format("{} holds no angle", name), remedy);
-        for (const double angle : angles)
-            if (!(angle >= from) || !(angle < to))
-                throw_input_error({}, fmt::format("{} of {} degrees is out of range", name, angle),
-                                  remedy);
-    };
-    const char* const polar = "angles from the normal lie between 0 and below 90 degrees";
-    check(request.theta_i_deg, "theta-i", 0.0, 90.0, polar);
-    if (!request.hemispherical) {
-        check(request.theta_o_deg, "theta-o", 0.0, 90.0, polar);
-        check(request.phi_deg, "phi", -360.0, 360.0 + 1e-9,
-              "azimuths lie between -360 and 360 degrees");
-    }
+void check_angles(const std::vector<double>& angles, const char* name, const char* remedy,
+                  const std::function<bool(double)>& is_good) {
+    if (angles.empty())
+        throw_input_error({}, fmt::format("{} holds no angle", name), remedy);
+    for (const double angle : angles)
+        if (!is_good(angle))
+            throw_input_error({}, fmt::format("{} of {} degrees is out of range", name, angle),
+                              remedy);
+}
+
+void check_polar_angles(const std::vector<double>& angles, const char* name, bool of_sheet) {
+    if (of_sheet)
+        return check_angles(angles, name,
+                            "angles from the normal lie between 0 and 180 degrees, and 90 is along "
+                            "the sheet",
+                            [](double a) { return a >= 0.0 && a <= 180.0 && a != 90.0; });
+    for (const double angle : angles)
+        if (angle > 90.0 && angle <= 180.0)
+            throw_input_error({},
+                              fmt::format("{} of {} degrees lies beneath the material, which is "
+                                          "opaque",
+                                          name, angle),
+                              "angles from the normal lie between 0 and below 90 degrees; a sheet "
+                              "(substrate type \"none\") has two sides");
+    check_angles(angles, name, "angles from the normal lie between 0 and below 90 degrees",
+                 [](double a) { return a >= 0.0 && a < 90.0; });
+}
+
+void check_request(const MeasureRequest& request, bool of_sheet) {
+    check_polar_angles(request.theta_i_deg, "theta-i", of_sheet);
+    if (request.hemispherical)
+        return;
+    check_polar_angles(request.theta_o_deg, "theta-o", of_sheet);
+    check_angles(request.phi_deg, "phi", "azimuths lie between -360 and 360 degrees",
+                 [](double a) { return a >= -360.0 && a <= 360.0; });
 }
 
 double radians(double degrees) {
     return degrees * std::numbers::pi / 180.0;
 }
 
-/// Appends the rows of one run and knows which wavelength pairs are possible.
-class RowWriter {
-public:
-    RowWriter(Measurement& measurement, const LayeredBsdf& surface)
-        : measurement_(measurement), surface_(surface), bands_(measurement.bands.count),
-          fluorescent_(!Eigen::MatrixXd(surface.coupling()).isDiagonal(0.0)) {}
+Eigen::VectorXd by_band(const LayeredBsdf& surface, int bands, const auto& value) {
+    Eigen::VectorXd values(bands);
+    for (int band = 0; band < bands; ++band)
+        values(band) = value(surface.at(band));
+    return values;
+}
 
-    void directional(double theta_i, double theta_o, double phi) {
-        const kernels::Vec3 wi = direction_at(std::cos(radians(theta_i)), 0.0);
-        const kernels::Vec3 wo = direction_at(std::cos(radians(theta_o)), radians(phi));
-        MeasureRow row{theta_i, theta_o, phi, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
-        diffuse(row, surface_.diffuse(wi, wo));
-        specular(row, [&](int band) { return surface_.at(band).specular(wi, wo); });
-    }
+void add_directional(RowWriter& rows, const LayeredBsdf& surface, const MeasureRow& angles,
+                     int bands) {
+    const kernels::Vec3 wi = direction_at(std::cos(radians(angles.theta_i_deg)), 0.0);
+    const kernels::Vec3 wo =
+        direction_at(std::cos(radians(angles.theta_o_deg)), radians(angles.phi_deg));
+    rows.add(angles, MeasuredPart::Diffuse, surface.diffuse(wi, wo));
+    rows.add(angles, MeasuredPart::Specular,
+             by_band(surface, bands, [&](const StackBsdf& at) { return at.specular(wi, wo); }));
+}
 
-    void hemispherical(double theta_i) {
-        const double c = std::cos(radians(theta_i));
-        MeasureRow row{theta_i, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
-        diffuse(row, surface_.diffuse_albedo(c));
-        specular(row, [&](int band) { return surface_.at(band).specular_albedo(c); });
-    }
-
-private:
-    void add(MeasureRow row, int i, int o, double value, MeasuredPart part) {
-        row.lambda_i_nm = measurement_.bands.centre_nm(i);
-        row.lambda_o_nm = measurement_.bands.centre_nm(o);
-        row.value = value;
-        row.part = part;
-        measurement_.rows.push_back(row);
-    }
-
-    /// Every (excitation, emission) that can hold something: the diagonal, Stokes shifts, and
-    /// others where they are not zero.
-    void diffuse(const MeasureRow& row, const Eigen::MatrixXd& values) {
-        const Eigen::MatrixXd& coupling = surface_.coupling();
-        for (int i = 0; i < bands_; ++i) {
-            for (int o = 0; o < bands_; ++o)
-                if (o == i || (fluorescent_ && (o > i || coupling(o, i) != 0.0)))
-                    add(row, i, o, values(o, i), MeasuredPart::Diffuse);
-        }
-    }
-    template <typename Value>
-    void specular(const MeasureRow& row, const Value& value) {
-        for (int band = 0; band < bands_; ++band)
-            add(row, band, band, value(band), MeasuredPart::Specular);
-    }
-
-    Measurement& measurement_;
-    const LayeredBsdf& surface_;
-    int bands_;
-    bool fluorescent_;
-};
+void add_hemispherical(RowWriter& rows, const LayeredBsdf& surface, double theta_i, int bands) {
+    const double c = std::cos(radians(theta_i));
+    rows.add(rows_at(theta_i), MeasuredPart::Diffuse, surface.diffuse_albedo(c));
+    rows.add(rows_at(theta_i), MeasuredPart::Specular,
+             by_band(surface, bands, [&](const StackBsdf& at) { return at.specular_albedo(c); }));
+}
 
 void add_notes(Measurement& measurement, const LayeredBsdf& surface,
                const MeasureRequest& request) {
@@ -134,29 +126,34 @@ WavelengthGrid measured_bands(const Material& material, const MeasureRequest& re
                           "the matrix's emission and excitation wavelengths share no common grid",
                           "name the bands to measure on: --bands FROM:TO:STEP");
     }
-    return grid_from_range(material.substrate.is_fluorescent() ? 300.0 : 380.0, 780.0, 10.0);
+    for (const Layer& layer : material.stack.layers)
+        for (const SlabDye& dye : layer.dyes)
+            if (dye.shares && dye.shares->emission == dye.shares->excitation)
+                return dye.shares->emission;
+    return grid_from_range(material.is_fluorescent() ? 300.0 : 380.0, 780.0, 10.0);
 }
 
 Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request) {
-    check_request(request);
+    check_request(request, stack.is_sheet());
     if (request.model == Model::Walk)
         return measure_by_walk(stack, substrate, bands, request);
     Measurement measurement;
     measurement.bands = bands;
     measurement.hemispherical = request.hemispherical;
+    measurement.of_sheet = stack.is_sheet();
     measurement.model = request.model == Model::Auto ? Model::Adding : request.model;
     const LayeredBsdf surface(stack, substrate, bands, closed_model(measurement.model));
-    RowWriter writer(measurement, surface);
+    RowWriter rows(measurement, possible_pairs({surface.coupling()}, bands.count, false));
     for (const double theta_i : request.theta_i_deg) {
         throw_if_stopped(request.stop);
         if (request.hemispherical) {
-            writer.hemispherical(theta_i);
+            add_hemispherical(rows, surface, theta_i, bands.count);
             continue;
         }
         for (const double theta_o : request.theta_o_deg)
             for (const double phi : request.phi_deg)
-                writer.directional(theta_i, theta_o, phi);
+                add_directional(rows, surface, rows_at(theta_i, theta_o, phi), bands.count);
     }
     add_notes(measurement, surface, request);
     return measurement;
@@ -169,6 +166,10 @@ Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_ba
 
 SubstrateValues measured_substrate(const Substrate& substrate, const WavelengthGrid& bands) {
     SubstrateValues measured;
+    if (substrate.type == SubstrateType::None) {
+        measured.matrix = Eigen::MatrixXd::Zero(bands.count, bands.count);
+        return measured;
+    }
     if (substrate.type == SubstrateType::Conductor) {
         for (const double nm : bands.centres_nm())
             measured.conductor.push_back(conductor_at(substrate.conductor, nm));
@@ -185,9 +186,9 @@ Measurement measure_material(const Material& material, const MeasureRequest& req
     MeasureRequest resolved = request;
     const ModelChoice choice = choose_model(material, request.model, ModelUse::Measure);
     resolved.model = choice.model;
-    check_request(resolved);
+    check_request(resolved, material.stack.is_sheet());
     const WavelengthGrid bands = measured_bands(material, request);
-    check_measure_memory(bands, material.substrate.is_fluorescent(), request);
+    check_measure_memory(material, bands, request);
     Measurement measurement = measure_substrate(
         material.stack, measured_substrate(material.substrate, bands), bands, resolved);
     if (!choice.reason.empty())

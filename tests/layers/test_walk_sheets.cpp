@@ -96,8 +96,8 @@ TEST(WalkSheets, Case65LightGoesTheSameWayBackThroughASheet) {
             const kernels::Vec3 a = direction_deg(from), b = direction_deg(to, 50);
             const WalkEstimate there = estimate_walk(walk, a, {&b, 1}, samples(10000), ++seed);
             const WalkEstimate back = estimate_walk(reversed, b, {&a, 1}, samples(10000), ++seed);
-            const Eigen::MatrixXd x = all_parts(there.mean.directional[0]),
-                                  y = all_parts(back.mean.directional[0]).transpose(),
+            const Eigen::MatrixXd x = all_light(there.mean.directional[0]),
+                                  y = all_light(back.mean.directional[0]).transpose(),
                                   e = all_errors(there.standard_error.directional[0]),
                                   f = all_errors(back.standard_error.directional[0]).transpose();
             for (int o = 0; o < 3; ++o)
@@ -129,13 +129,13 @@ TEST(WalkSheets, Case65DirectionsAddUpToTheHemisphereOfEitherSide) {
                                                            is_back == (wi.z > 0.0) ? c : -c);
                     WalkTally tally = walk.tally(1);
                     walk.eval(wi, {&wo, 1}, seed, static_cast<std::uint64_t>(k), tally);
-                    const Eigen::MatrixXd flux = std::numbers::pi * all_parts(tally.directional[0]);
+                    const Eigen::MatrixXd flux = std::numbers::pi * all_light(tally.directional[0]);
                     sum += flux / count;
                     squares += flux.cwiseAbs2() / count;
                 }
                 const WalkTally &mean = whole.mean, &error = whole.standard_error;
                 Eigen::MatrixXd expected =
-                    all_parts(is_back ? mean.hemispherical : mean.transmitted);
+                    all_light(is_back ? mean.hemispherical : mean.transmitted);
                 expected -=
                     Eigen::MatrixXd((is_back ? mean.delta : mean.delta_transmitted).asDiagonal());
                 const Eigen::MatrixXd e =

@@ -37,7 +37,7 @@ TEST(WalkSlabs, AgreeWithAnIndependentWalk) {
                           samples(100000), seed++);
         const auto compare = [&](const WalkTally::Parts& mean, const WalkTally::Parts& error,
                                  const SlabTruth& truth, const char* side) {
-            expect_near(all_parts(mean), all_errors(error), truth, 4.0,
+            expect_near(all_light(mean), all_errors(error), truth, 4.0,
                         std::string(one.name) + ", " + side);
         };
         compare(found.mean.hemispherical, found.standard_error.hemispherical, one.reflected,
@@ -200,9 +200,9 @@ TEST(WalkSlabs, Case63NoInterfaceIsThereBetweenDyesOfOneMedium) {
     const WalkEstimate b = estimate_walk(walk_of(one), direction_deg(30), {}, samples(40000), 4);
     const auto compare = [](const WalkEstimate& x, const WalkEstimate& y,
                             WalkTally::Parts WalkTally::*side) {
-        const Eigen::MatrixXd e = all_errors(y.standard_error.*side), m = all_parts(y.mean.*side);
+        const Eigen::MatrixXd e = all_errors(y.standard_error.*side), m = all_light(y.mean.*side);
         const SlabTruth truth{{m.data(), m.data() + 9}, {e.data(), e.data() + 9}};
-        expect_near(all_parts(x.mean.*side).transpose(),
+        expect_near(all_light(x.mean.*side).transpose(),
                     all_errors(x.standard_error.*side).transpose(), truth, sidak_bound(18),
                     "two slabs");
     };

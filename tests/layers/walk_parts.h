@@ -22,24 +22,17 @@ inline LayerWalk walk_of(const LayerStack& stack,
                      slab_emissions(stack, three_bands));
 }
 
-/// All that leaves on one side, rows = emission.
-inline Eigen::MatrixXd all_parts(const WalkTally::Parts& parts) {
-    Eigen::MatrixXd sum = parts.specular.asDiagonal();
-    for (const Eigen::MatrixXd* part : {&parts.diffuse, &parts.slab})
-        sum += part->cols() == 1 ? Eigen::MatrixXd(part->col(0).asDiagonal()) : *part;
-    return sum;
-}
-/// Standard errors of that.
+/// Standard errors of all_light.
 inline Eigen::MatrixXd all_errors(WalkTally::Parts parts) {
     for_parts(parts, [](auto& part) { part = part.cwiseAbs2().eval(); });
-    return all_parts(parts).cwiseSqrt();
+    return all_light(parts).cwiseSqrt();
 }
 
 /// What the columns add up to on both sides and within.
 inline Eigen::VectorXd column_sums(const WalkTally& tally) {
-    Eigen::MatrixXd sum = all_parts(tally.hemispherical) + tally.guided;
+    Eigen::MatrixXd sum = all_light(tally.hemispherical) + tally.guided;
     if (tally.transmitted.specular.size() > 0)
-        sum += all_parts(tally.transmitted);
+        sum += all_light(tally.transmitted);
     return sum.colwise().sum();
 }
 

@@ -1,5 +1,6 @@
 #include "tools/program/kept_work.h"
 
+#include "host/layers/stack/slab_emission.h"
 #include "host/render/checkpoint/render_identity.h"
 #include "host/render/checkpoint/work_checkpoint.h"
 #include "host/scene/model/sha256.h"
@@ -8,7 +9,8 @@
 #include "tools/program/interrupt.h"
 #include "tools/program/outputs.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <fstream>
@@ -33,8 +35,8 @@ std::string text_of(const SurfaceValues& surface) {
                        surface.film.thickness_nm, surface.film.ior);
 }
 std::string text_of(const SlabValues& slab) {
-    return fmt::format("slab {} {} {} {}", slab.ior, slab.tau, slab.tau_scattering,
-                       slab.anisotropy);
+    return fmt::format("slab {} {} {} {} {}", slab.ior, slab.tau, slab.tau_scattering,
+                       slab.anisotropy, slab.tau_dyes);
 }
 std::string text_of(const FlakesValues& flakes) {
     return fmt::format("flakes {} {}", flakes.coverage, text_of(flakes.reflector));
@@ -105,6 +107,8 @@ std::string stack_digest(const LayerStack& stack, const WavelengthGrid& bands) {
     for (const double nm : bands.centres_nm())
         for (const StackElement& element : stack_at(stack, nm))
             text += std::visit([](const auto& values) { return text_of(values); }, element) + "\n";
+    for (const Eigen::MatrixXd& emission : slab_emissions(stack, bands))
+        text += fmt::format("emission {}\n", fmt::join(emission.reshaped(), " "));
     return sha256_hex(text);
 }
 

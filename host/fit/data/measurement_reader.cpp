@@ -85,12 +85,12 @@ void read_row(const TextReader& reader, std::vector<TextToken> tokens, RowsByDir
         throw_input_error(reader.position(tokens.back()),
                           fmt::format("{} values in this line", tokens.size()),
                           fmt::format("write {}", headings));
-    if (tokens[7].text == "specular")
+    if (tokens[7].text == "specular" || tokens[7].text == "slab")
         return;
     if (tokens[7].text != "diffuse")
         throw_input_error(reader.position(tokens[7]),
                           fmt::format("'{}' is not a part", tokens[7].text),
-                          "write diffuse or specular");
+                          "write diffuse, slab or specular");
     const Directions at{angle(reader, tokens[0], 90.0), angle(reader, tokens[1], 90.0),
                         angle(reader, tokens[2], 360.0)};
     const auto number = [&](const TextToken& token) {

@@ -274,6 +274,17 @@ void WalkTally::set_zero() {
     for_arrays(*this, [](auto& array) { array.setZero(); });
 }
 
+Eigen::MatrixXd all_light(const WalkTally::Parts& parts) {
+    Eigen::MatrixXd sum = parts.specular.asDiagonal();
+    for (const Eigen::MatrixXd* part : {&parts.diffuse, &parts.slab}) {
+        if (part->cols() == sum.cols())
+            sum += *part;
+        else
+            sum.diagonal() += part->col(0);
+    }
+    return sum;
+}
+
 WalkTally LayerWalk::tally(std::size_t directions) const {
     const WalkTally::Parts parts = empty_parts(material_);
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(bands());

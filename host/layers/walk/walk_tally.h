@@ -36,6 +36,9 @@ void for_parts(Parts& parts, const Function& f) {
     f(parts.specular);
 }
 
+/// Returns all light of the parts together: (bands, bands), rows = emission.
+Eigen::MatrixXd all_light(const WalkTally::Parts& parts);
+
 /// Calls f(array) for every array of a tally, always in one order.
 template <typename Tally, typename Function>
 void for_arrays(Tally& tally, const Function& f) {
