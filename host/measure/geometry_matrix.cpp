@@ -58,8 +58,9 @@ void require_above_horizon(const std::string& text, double theta_i, double theta
     const auto is_above = [](double theta) { return theta >= 0.0 && theta < 90.0; };
     if (is_above(theta_i) && theta_o > 90.0 && theta_o <= 180.0)
         throw std::invalid_argument(
-            fmt::format("'{}' looks at the far side, from {:g} degrees: the materials here are "
-                        "opaque and transmit nothing; thetas are from 0 to below 90",
+            fmt::format("'{}' looks at the far side, from {:g} degrees: colours are of what is "
+                        "reflected, `measure` has what sheets transmit; thetas are from 0 to "
+                        "below 90",
                         text, theta_o));
     for (const double theta : {theta_i, theta_o})
         if (!is_above(theta))
@@ -110,6 +111,18 @@ Eigen::MatrixXd by_closed_model(const Material& material, const SubstrateValues&
             values(band, band) -= stack.delta(std::cos(theta)) + into_port(stack, theta);
     }
     return values;
+}
+
+/// Refuses what closed models do not compute.
+void refuse_unknown(const Material& material, const ViewingGeometry& geometry, Model model) {
+    if (model != Model::Walk && geometry.kind == Kind::HemisphericalDirectional &&
+        material.stack.is_dyed())
+        throw_input_error(material.position,
+                          fmt::format("the geometry {} is not known for dyes in layers: it is "
+                                      "computed as 8/d with excitation and emission exchanged, "
+                                      "and only those of substrates are",
+                                      geometry.name),
+                          "ask for --geometry 8/d or 45/0, or for the model walk");
 }
 
 /// By reciprocity, light that comes from everywhere and is seen at 8 degrees is light that comes at
@@ -165,6 +178,7 @@ ViewingGeometry viewing_geometry(const std::string& text) {
 
 ReradiationMatrix geometry_matrix(const Material& material, const ViewingGeometry& geometry) {
     const ModelChoice choice = choose_model(material, Model::Auto, ModelUse::Measure);
+    refuse_unknown(material, geometry, choice.model);
     const WavelengthGrid bands = measured_bands(material, {});
     check_measure_memory(material, bands, {});
     SubstrateValues substrate = measured_substrate(material.substrate, bands);

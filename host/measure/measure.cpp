@@ -7,6 +7,7 @@
 #include "host/measure/row_writer.h"
 #include "host/measure/walk_measurement.h"
 #include "host/scene/model/closed_model.h"
+#include "host/scene/model/matrix_grids.h"
 #include "host/scene/model/model_choice.h"
 #include "host/scene/model/substrate.h"
 #include "reradiant/error.h"
@@ -65,53 +66,73 @@ double radians(double degrees) {
     return degrees * std::numbers::pi / 180.0;
 }
 
-Eigen::VectorXd by_band(const LayeredBsdf& surface, int bands, const auto& value) {
-    Eigen::VectorXd values(bands);
-    for (int band = 0; band < bands; ++band)
-        values(band) = value(surface.at(band));
-    return values;
+/// Light that slabs spread keeps its band where they hold no dyes.
+PartValues values_of(const LayeredBsdf& surface, const LayeredBsdf::Parts& parts) {
+    if (surface.emitting())
+        return {parts.diffuse, parts.slab, parts.specular};
+    return {parts.diffuse, parts.slab.diagonal(), parts.specular};
 }
 
-void add_directional(RowWriter& rows, const LayeredBsdf& surface, const MeasureRow& angles,
-                     int bands) {
+AirDirection from(double theta_deg) {
+    return {std::fabs(std::cos(radians(theta_deg))), theta_deg < 90.0 ? Side::Above : Side::Below};
+}
+
+void add_directional(PartRows& rows, const LayeredBsdf& surface, const MeasureRow& angles) {
     const kernels::Vec3 wi = direction_at(std::cos(radians(angles.theta_i_deg)), 0.0);
     const kernels::Vec3 wo =
         direction_at(std::cos(radians(angles.theta_o_deg)), radians(angles.phi_deg));
-    rows.add(angles, MeasuredPart::Diffuse, surface.diffuse(wi, wo));
-    rows.add(angles, MeasuredPart::Specular,
-             by_band(surface, bands, [&](const StackBsdf& at) { return at.specular(wi, wo); }));
+    rows.add_reflected(angles, values_of(surface, surface.parts(wi, wo)));
 }
 
-void add_hemispherical(RowWriter& rows, const LayeredBsdf& surface, double theta_i, int bands) {
-    const double c = std::cos(radians(theta_i));
-    rows.add(rows_at(theta_i), MeasuredPart::Diffuse, surface.diffuse_albedo(c));
-    rows.add(rows_at(theta_i), MeasuredPart::Specular,
-             by_band(surface, bands, [&](const StackBsdf& at) { return at.specular_albedo(c); }));
+void add_hemispherical(PartRows& rows, const LayeredBsdf& surface, double theta_i) {
+    const MeasureRow angles = rows_at(theta_i);
+    const AirDirection wi = from(theta_i);
+    rows.add_reflected(angles, values_of(surface, surface.albedo(wi, wi.side)));
+    if (!surface.is_sheet())
+        return;
+    const Side far = wi.side == Side::Above ? Side::Below : Side::Above;
+    rows.add_transmitted(angles, values_of(surface, surface.albedo(wi, far)));
+    rows.add_guided(angles, surface.guided(wi));
+}
+
+/// The largest shares of the incident light that are not where one may look for them.
+struct Remarks {
+    double delta = 0.0, straight_on = 0.0, lost = 0.0;
+
+    void add(const LayeredBsdf& surface, double theta_deg) {
+        const AirDirection wi = from(theta_deg);
+        delta = std::max(delta, surface.delta(wi.cosine, wi.side).maxCoeff());
+        if (surface.is_sheet())
+            straight_on = std::max(straight_on, surface.straight_on(wi.cosine).maxCoeff());
+        for (int band = 0; band < surface.bands(); ++band)
+            lost = std::max(lost, surface.at(band).lost(wi.cosine));
+    }
+};
+
+std::string note_of_deltas(const Remarks& remarks, bool hemispherical) {
+    if (hemispherical)
+        return "the rows include the mirror reflection of smooth surfaces";
+    if (!(remarks.straight_on > 0.0))
+        return fmt::format("the mirror reflection of smooth surfaces (weight up to {:.9g}) is a "
+                           "delta and left out of these directional rows",
+                           remarks.delta);
+    return fmt::format("the mirror reflection of smooth surfaces (weight up to {:.9g}) and what "
+                       "passes them straight on ({:.9g}) are deltas and left out of these "
+                       "directional rows",
+                       remarks.delta, remarks.straight_on);
 }
 
 void add_notes(Measurement& measurement, const LayeredBsdf& surface,
                const MeasureRequest& request) {
-    double delta = 0.0, lost = 0.0;
-    for (const double theta : request.theta_i_deg) {
-        for (int band = 0; band < measurement.bands.count; ++band) {
-            const double c = std::cos(radians(theta));
-            delta = std::max(delta, surface.at(band).delta(c));
-            lost = std::max(lost, surface.at(band).lost(c));
-        }
-    }
-    if (delta > 0.0) {
-        measurement.notes.push_back(
-            request.hemispherical
-                ? "the rows include the mirror reflection of smooth surfaces"
-                : fmt::format("the mirror reflection of smooth surfaces (weight up to {:.9g}) is "
-                              "a delta and left out of these directional rows",
-                              delta));
-    }
-    if (lost > 0.0) {
+    Remarks remarks;
+    for (const double theta : request.theta_i_deg)
+        remarks.add(surface, theta);
+    if (remarks.delta > 0.0 || remarks.straight_on > 0.0)
+        measurement.notes.push_back(note_of_deltas(remarks, request.hemispherical));
+    if (remarks.lost > 0.0)
         measurement.notes.push_back(fmt::format(
             "scattering = \"single\" loses up to {:.6g} of the incident flux between facets",
-            lost));
-    }
+            remarks.lost));
 }
 
 } // namespace
@@ -119,17 +140,18 @@ void add_notes(Measurement& measurement, const LayeredBsdf& surface,
 WavelengthGrid measured_bands(const Material& material, const MeasureRequest& request) {
     if (request.bands)
         return *request.bands;
-    if (const auto own = material.substrate.own_grid())
+    const std::vector<const ReradiationMatrix*> matrices = matrices_of(material);
+    if (const auto own = common_grid(matrices))
         return *own;
-    if (material.substrate.matrix) {
+    if (!matrices.empty()) {
         throw_input_error({},
-                          "the matrix's emission and excitation wavelengths share no common grid",
+                          matrices.size() == 1
+                              ? "the matrix's emission and excitation wavelengths share no common "
+                                "grid"
+                              : "the wavelengths of the substrate's matrix and of the layers' "
+                                "shares share no common grid",
                           "name the bands to measure on: --bands FROM:TO:STEP");
     }
-    for (const Layer& layer : material.stack.layers)
-        for (const SlabDye& dye : layer.dyes)
-            if (dye.shares && dye.shares->emission == dye.shares->excitation)
-                return dye.shares->emission;
     return grid_from_range(material.is_fluorescent() ? 300.0 : 380.0, 780.0, 10.0);
 }
 
@@ -144,16 +166,16 @@ Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& su
     measurement.of_sheet = stack.is_sheet();
     measurement.model = request.model == Model::Auto ? Model::Adding : request.model;
     const LayeredBsdf surface(stack, substrate, bands, closed_model(measurement.model));
-    RowWriter rows(measurement, possible_pairs({surface.coupling()}, bands.count, false));
+    PartRows rows(measurement, stack, possible_pairs({surface.coupling()}, bands.count, false));
     for (const double theta_i : request.theta_i_deg) {
         throw_if_stopped(request.stop);
         if (request.hemispherical) {
-            add_hemispherical(rows, surface, theta_i, bands.count);
+            add_hemispherical(rows, surface, theta_i);
             continue;
         }
         for (const double theta_o : request.theta_o_deg)
             for (const double phi : request.phi_deg)
-                add_directional(rows, surface, rows_at(theta_i, theta_o, phi), bands.count);
+                add_directional(rows, surface, rows_at(theta_i, theta_o, phi));
     }
     add_notes(measurement, surface, request);
     return measurement;

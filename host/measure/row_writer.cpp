@@ -41,4 +41,26 @@ void RowWriter::add(const MeasureRow& angles, MeasuredPart part, const Eigen::Ma
     }
 }
 
+void PartRows::add_reflected(const MeasureRow& angles, const PartValues& values,
+                             const PartValues& errors) {
+    if (!is_sheet_)
+        rows_.add(angles, MeasuredPart::Diffuse, values.diffuse, errors.diffuse);
+    if (may_spread_)
+        rows_.add(angles, MeasuredPart::Slab, values.slab, errors.slab);
+    rows_.add(angles, MeasuredPart::Specular, values.specular, errors.specular);
+}
+
+void PartRows::add_transmitted(const MeasureRow& angles, const PartValues& values,
+                               const PartValues& errors) {
+    if (may_spread_)
+        rows_.add(angles, MeasuredPart::Transmitted, values.slab, errors.slab);
+    rows_.add(angles, MeasuredPart::TransmittedSpecular, values.specular, errors.specular);
+}
+
+void PartRows::add_guided(const MeasureRow& angles, const Eigen::MatrixXd& values,
+                          const Eigen::MatrixXd& errors) {
+    if (values.maxCoeff() > 0.0)
+        rows_.add(angles, MeasuredPart::Guided, values, errors);
+}
+
 } // namespace reradiant

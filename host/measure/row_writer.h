@@ -35,6 +35,34 @@ private:
     PossiblePairs possible_;
 };
 
+/// Light that leaves on one side: `diffuse` and `slab` as RowWriter::add takes values, `specular`
+/// by band. Its errors have the same shapes, or no entries.
+struct PartValues {
+    Eigen::MatrixXd diffuse, slab;
+    Eigen::VectorXd specular;
+};
+
+/// `PartRows` appends the rows of the parts that a material may have.
+class PartRows {
+public:
+    PartRows(Measurement& measurement, const LayerStack& stack, PossiblePairs possible)
+        : rows_(measurement, std::move(possible)), is_sheet_(stack.is_sheet()),
+          may_spread_(stack.scatters() || stack.is_dyed()) {}
+
+    void add_reflected(const MeasureRow& angles, const PartValues& values,
+                       const PartValues& errors = {});
+    /// Of sheets, hemispherical. `diffuse` is not used.
+    void add_transmitted(const MeasureRow& angles, const PartValues& values,
+                         const PartValues& errors = {});
+    /// Where there is any.
+    void add_guided(const MeasureRow& angles, const Eigen::MatrixXd& values,
+                    const Eigen::MatrixXd& errors = {});
+
+private:
+    RowWriter rows_;
+    bool is_sheet_, may_spread_;
+};
+
 /// The angles of rows that stand for all directions of a side (theta_o and phi are not used), or
 /// for one.
 inline MeasureRow rows_at(double theta_i_deg, double theta_o_deg = 0.0, double phi_deg = 0.0) {

@@ -34,39 +34,18 @@ std::vector<Detector> detectors_of(const MeasureRequest& request) {
     return detectors;
 }
 
-/// Appends the rows of one incidence or pair of directions.
-class WalkRows {
-public:
-    WalkRows(Measurement& measurement, const LayerStack& stack, PossiblePairs possible)
-        : rows_(measurement, std::move(possible)), is_sheet_(stack.is_sheet()),
-          may_spread_(stack.scatters() || stack.is_dyed()) {}
+PartValues values_of(const WalkTally::Parts& parts) {
+    return {parts.diffuse, parts.slab, parts.specular};
+}
 
-    void add_reflected(const MeasureRow& angles, const WalkTally::Parts& mean,
-                       const WalkTally::Parts& error) {
-        if (!is_sheet_)
-            rows_.add(angles, MeasuredPart::Diffuse, mean.diffuse, error.diffuse);
-        if (may_spread_)
-            rows_.add(angles, MeasuredPart::Slab, mean.slab, error.slab);
-        rows_.add(angles, MeasuredPart::Specular, mean.specular, error.specular);
-    }
-    void add_hemispherical(double theta_i, const WalkEstimate& found) {
-        const MeasureRow angles = rows_at(theta_i);
-        const WalkTally &mean = found.mean, &error = found.standard_error;
-        add_reflected(angles, mean.hemispherical, error.hemispherical);
-        if (is_sheet_ && may_spread_)
-            rows_.add(angles, MeasuredPart::Transmitted, mean.transmitted.slab,
-                      error.transmitted.slab);
-        if (is_sheet_)
-            rows_.add(angles, MeasuredPart::TransmittedSpecular, mean.transmitted.specular,
-                      error.transmitted.specular);
-        if (mean.guided.maxCoeff() > 0.0)
-            rows_.add(angles, MeasuredPart::Guided, mean.guided, error.guided);
-    }
-
-private:
-    RowWriter rows_;
-    bool is_sheet_, may_spread_;
-};
+void add_hemispherical(PartRows& rows, double theta_i, const WalkEstimate& found, bool of_sheet) {
+    const MeasureRow angles = rows_at(theta_i);
+    const WalkTally &mean = found.mean, &error = found.standard_error;
+    rows.add_reflected(angles, values_of(mean.hemispherical), values_of(error.hemispherical));
+    if (of_sheet)
+        rows.add_transmitted(angles, values_of(mean.transmitted), values_of(error.transmitted));
+    rows.add_guided(angles, mean.guided, error.guided);
+}
 
 /// A `WalkJournal` keeps the state of the walk of every theta_i, in order, and tells it to a
 /// request that wants to hear of it.
@@ -117,7 +96,7 @@ std::string note_of_deltas(const Remarks& remarks) {
                            "is a delta and left out of these directional rows",
                            remarks.delta);
     return fmt::format("the mirror reflection of smooth surfaces (weight up to about {:.3g}) and "
-                       "what passes them straight ({:.3g}) are deltas and left out of these "
+                       "what passes them straight on ({:.3g}) are deltas and left out of these "
                        "directional rows",
                        remarks.delta, remarks.delta_transmitted);
 }
@@ -156,7 +135,7 @@ Measurement measure_by_walk(const LayerStack& stack, const SubstrateValues& subs
     const LayerWalk walk(stack, substrate, bands.centres_nm(), couplings);
     if (!stack.is_sheet())
         couplings.push_back(substrate.matrix);
-    WalkRows rows(measurement, stack,
+    PartRows rows(measurement, stack,
                   possible_pairs(couplings, bands.count, !stack.layers.empty()));
     const std::vector<Detector> detectors =
         request.hemispherical ? std::vector<Detector>{} : detectors_of(request);
@@ -170,10 +149,11 @@ Measurement measure_by_walk(const LayerStack& stack, const SubstrateValues& subs
         const WalkEstimate found =
             journal.estimate(walk, direction_at(std::cos(radians(theta_i)), 0.0), wo, samples);
         if (request.hemispherical)
-            rows.add_hemispherical(theta_i, found);
+            add_hemispherical(rows, theta_i, found, stack.is_sheet());
         for (std::size_t k = 0; k < detectors.size(); ++k)
             rows.add_reflected(rows_at(theta_i, detectors[k].theta_deg, detectors[k].phi_deg),
-                               found.mean.directional[k], found.standard_error.directional[k]);
+                               values_of(found.mean.directional[k]),
+                               values_of(found.standard_error.directional[k]));
         remarks.add(found.mean);
     }
     add_notes(measurement, walk, samples, request.seed, remarks);

@@ -22,7 +22,8 @@ std::vector<std::string> preset_names();
 Material load_material(const std::filesystem::path& file);
 
 /// The layers of a MATERIAL.toml, whose substrate may be anything or absent: what lay above a
-/// sample that was measured through them. Input Error with the place.
+/// sample that was measured through them. Input Error with the place, also for dyes in the layers
+/// and for a sheet, since neither can be looked through to a substrate.
 LayerStack load_stack(const std::filesystem::path& file);
 
 } // namespace reradiant

@@ -28,10 +28,11 @@ struct SynthNoise {
     double relative = 0.0;
 };
 
-/// A substrate of known fluorophores and how it is measured.
+/// A substrate of known fluorophores and how it is measured, through layers that may hold dyes of
+/// their own.
 struct SynthRecipe {
     WavelengthGrid emission{380.0, 10.0, 41}, excitation{300.0, 10.0, 49};
-    std::vector<Fluorophore> fluorophores;
+    std::vector<Fluorophore> fluorophores; ///< of the substrate
     Spectrum reflectance;
     LayerStack stack;                           ///< above the substrate; by the model `adding`
     std::vector<BispectralGeometry> geometries; ///< empty: the bare matrix itself is measured
@@ -48,9 +49,9 @@ SynthRecipe read_synth_recipe(const std::filesystem::path& file);
 ReradiationMatrix synth_truth(const SynthRecipe& recipe);
 
 /// Returns what the instrument sees without noise and spill, one matrix (emission, excitation) for
-/// each geometry: pi times the BRRDF's diffuse part, or the matrix itself without geometries.
-/// std::invalid_argument when the two grids are not parts of one grid but must be (a stack without
-/// bandpasses), and when the bandpasses need too fine a grid.
+/// each geometry: pi times the BRRDF's diffuse part and what dyes in layers add to it, or the
+/// matrix itself without geometries. std::invalid_argument when the two grids are not parts of one
+/// grid but must be (a stack without bandpasses), and when the bandpasses need too fine a grid.
 std::vector<Eigen::MatrixXd> synth_noise_free(const SynthRecipe& recipe);
 
 /// Adds the reflected light that emission bands beside the diagonal see.

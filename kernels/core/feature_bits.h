@@ -74,6 +74,13 @@ FEATURE_BIT(scattering_slabs, "no slab scatters")
 #define FEATURE_SCATTERING_SLABS 1
 #endif
 
+/// Some slab holds a dye, and its material is no walk's.
+#ifdef FEATURE_BIT
+FEATURE_BIT(dyes, "no slab holds a dye")
+#elif !defined(FEATURE_DYES)
+#define FEATURE_DYES 1
+#endif
+
 /// Some substrate is Oren-Nayar.
 #ifdef FEATURE_BIT
 FEATURE_BIT(oren_nayar, "no substrate is Oren-Nayar")

@@ -34,6 +34,10 @@
 #ifndef LOBES
 #define LOBES 2
 #endif
+/// Channels of the material with dyes that has most.
+#ifndef DYE_CHANNELS
+#define DYE_CHANNELS 2
+#endif
 /// Layers of the material with most that is walked through.
 #ifndef WALK_LAYERS
 #define WALK_LAYERS 2

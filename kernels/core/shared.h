@@ -193,8 +193,14 @@ typedef struct {
     shared_uint walk;  ///< walked through: the first of its layer_count + 1 parts; or NO_INDEX
     shared_uint shift; ///< hero: [phase][emission lane][excitation lane], cumulative probability;
                        ///< NO_INDEX: nothing shifts
+    shared_uint dyes;  ///< [channel][phase][node][lane], what light brings to dyes and substrate
+                       ///< (gather_dyes.h) instead of `transmission` and the substrate's operator;
+                       ///< NO_INDEX: no slab is dyed
+    shared_uint dye_coupling; ///< [phase][channel][excitation lane][channel][emission lane]
+    shared_uint dye_channels;
+    shared_uint dyes_shift_up; ///< 1: nothing is sent out below the wavelength that excites it
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 108);
+ASSERT_SIZE(MaterialRecord, 124);
 
 /// Extinctions that distances in a scattering slab are sampled with (walk.h).
 #define WALK_REFERENCES 4

@@ -3,6 +3,9 @@
 #ifndef RERADIANT_GATHER_LAYERS_H
 #define RERADIANT_GATHER_LAYERS_H
 
+#if FEATURE_DYES
+#include "kernels/stages/gather_dyes.h"
+#endif
 #include "kernels/stages/gather_lanes.h"
 #include "kernels/stages/gather_specular.h"
 #include "kernels/stages/gather_substrate.h"
@@ -17,6 +20,9 @@ typedef struct {
 #endif
 #if FEATURE_HERO
     Lanes left[PATH_CHUNKS]; // `up` is at other wavelengths than what leaves
+#endif
+#if FEATURE_DYES
+    DyeChannels dyes; // instead of `down`
 #endif
 } GatherSums;
 
@@ -38,12 +44,21 @@ static void clear_sums(GatherSums* sums) {
         sums->up[c] = (Lanes)(0.0f);
         sums->GATHER_LEFT[c] = (Lanes)(0.0f);
     }
+#if FEATURE_DYES
+    clear_dyes(&sums->dyes);
+#endif
 }
 
 /// Adds what one direction brings, its weights in `d` and `lobe_weights`.
 static void gather_one(const GatherContext* context, DirectionRecord d, Vec3 wo, TableStencil so,
                        __global const float* lobe_weights, const Lanes* radiance,
                        GatherSums* sums) {
+#if FEATURE_DYES
+    if (context->material.dyes != NO_INDEX) {
+        reach_dyes(context, table_stencil(d.z), d.diffuse, radiance, &sums->dyes);
+        d.diffuse = 0.0f;
+    }
+#endif
     gather_direction(context, d, wo, so, lobe_weights, radiance, sums->down, sums->GATHER_FIRST,
                      sums->up);
 #if FEATURE_MODEL_A_PER_LANE
@@ -75,7 +90,12 @@ static void gather_layers(const GatherScene* scene, const GatherContext* context
         gather_one(context, vertex->towards_light, wo, so, lobe_weights + LOBES, radiance, &sums);
     }
 #endif
-    leave_substrate(context, so, sums.down, sums.GATHER_FIRST, sums.GATHER_LEFT);
+#if FEATURE_DYES
+    if (context->material.dyes != NO_INDEX)
+        leave_dyes(context, so, &sums.dyes, sums.GATHER_LEFT);
+    else
+#endif
+        leave_substrate(context, so, sums.down, sums.GATHER_FIRST, sums.GATHER_LEFT);
 #if FEATURE_HERO
     sums.left[0] += context->material.shift == NO_INDEX
                         ? sums.up[0]

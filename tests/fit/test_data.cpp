@@ -101,6 +101,18 @@ TEST_F(DataTest, MeasurementsBecomeBlocksOfRadianceFactors) {
     EXPECT_TRUE(std::isnan(data.blocks[1].value(1, 0)));
 }
 
+TEST_F(DataTest, LightOfSlabsIsLeftOutAndThatOfTheirDyesIsRefused) {
+    const std::string rows = "45,0,0,400,400,0.1,0.01,diffuse\n"
+                             "45,0,0,400,410,0.02,0,diffuse\n"
+                             "45,0,0,400,400,0.3,0,slab\n"
+                             "45,0,0,400,410,0,0,slab\n";
+    const BispectralData data = read(measure_headings + rows);
+    EXPECT_NEAR(data.blocks.at(0).value(0, 0), 0.1 * 3.14159265358979, 1e-12);
+    EXPECT_NEAR(data.blocks.at(0).value(1, 0), 0.02 * 3.14159265358979, 1e-12);
+    expect_refused(measure_headings + rows + "45,0,0,400,420,0.01,0,slab\n", "6:23",
+                   "dyes in its layers");
+}
+
 TEST_F(DataTest, MeasurementsOfSpreadsheetsAndTheirUnits) {
     const std::string row = "45,0,0,400,400,0.1,0.01,diffuse\n";
     const std::string padded =

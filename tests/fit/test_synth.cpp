@@ -1,4 +1,5 @@
 #include "host/fit/synth/synth_band.h"
+#include "host/measure/measure_substrate.h"
 #include "reradiant/reradiation.h"
 #include "reradiant/synth.h"
 #include "tests/support/scratch_folder.h"
@@ -6,6 +7,7 @@
 #include <Eigen/LU>
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 using namespace reradiant;
@@ -229,4 +231,28 @@ TEST_F(Synth, ImpossibleRecipesAreRefused) {
     recipe = plain_recipe();
     recipe.instrument.emission_fwhm_nm = 0.5;
     EXPECT_THROW(synthesise(recipe, 1), std::invalid_argument); // 5000 fine bands
+}
+
+/// No instrument tells light of dyes in layers from that of the substrate.
+TEST_F(Synth, DyesInLayersAreMeasuredWithTheSubstrate) {
+    SynthRecipe recipe;
+    recipe.emission = recipe.excitation = {400.0, 50.0, 5};
+    recipe.reflectance = Spectrum::constant(0.8);
+    recipe.geometries = {{45, 0, 0}};
+    Layer& layer = recipe.stack.layers.emplace_back();
+    layer.dyes.push_back({Spectrum::gaussian(450.0, 30.0, 0.5), 1.0,
+                          Spectrum::gaussian(550.0, 30.0, 1.0), 0.9, nullptr});
+    const Eigen::MatrixXd seen = synth_noise_free(recipe).at(0);
+    MeasureRequest request;
+    request.model = Model::Adding;
+    request.theta_i_deg = {45};
+    Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(5, 5);
+    const Eigen::MatrixXd bare = Eigen::MatrixXd::Identity(5, 5) * 0.8;
+    for (const MeasureRow& row : measure_stack(recipe.stack, bare, recipe.emission, request).rows)
+        if (row.part != MeasuredPart::Specular)
+            expected(recipe.emission.band_of(row.lambda_o_nm),
+                     recipe.emission.band_of(row.lambda_i_nm)) += std::numbers::pi * row.value;
+    EXPECT_LT((seen - expected).cwiseAbs().maxCoeff(), 1e-14);
+    layer.dyes.clear();
+    EXPECT_GT(synth_noise_free(recipe).at(0)(1, 1), 1.5 * seen(1, 1)) << "the dye absorbs there";
 }

@@ -156,3 +156,27 @@ TEST_F(SynthRecipes, OneToFourFluorophores) {
                 "emission = { peak_nm = 500, width_nm = 40 }\n";
     EXPECT_THROW(read(text), Error);
 }
+
+TEST_F(SynthRecipes, LayersMayHoldDyesInsteadOfTheSubstrate) {
+    const std::string dyed = "reflectance = 0.8\n[[material.layer]]\nior = 1.5\n"
+                             "[[material.layer.fluorophores]]\nabsorption = 0.5\n"
+                             "emission = { gaussian_nm = 550, sigma_nm = 20 }\n"
+                             "quantum_yield = 0.9\n";
+    const std::string geometry =
+        "[geometry]\ntheta_i_deg = [45]\ntheta_o_deg = [0]\nphi_deg = [0]\n";
+    const SynthRecipe recipe = read(dyed + geometry);
+    EXPECT_TRUE(recipe.fluorophores.empty());
+    ASSERT_TRUE(recipe.stack.is_dyed());
+    EXPECT_EQ(recipe.stack.layers[0].dyes[0].quantum_yield, 0.9);
+    EXPECT_THROW(read(dyed + "concentration = 0\n" + geometry), Error) << "nothing fluoresces";
+}
+
+TEST_F(SynthRecipes, SheetsAndSubstratesOfMaterialsAreRefused) {
+    expect_refused("[[fluorophore]]",
+                   "[[material.layer]]\nior = 1.5\n[material.back]\nalpha = 0.1\n[[fluorophore]]",
+                   ":4:11", "a sheet has none");
+    expect_refused("[[fluorophore]]",
+                   "[[material.layer]]\nior = 1.5\n[material.substrate]\ntype = \"none\"\n"
+                   "[[fluorophore]]",
+                   ":4:11", "are the substrate");
+}

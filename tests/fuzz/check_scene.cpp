@@ -30,6 +30,15 @@ void check_conductor(const Conductor& conductor) {
     require_finite(conductor.alpha, "roughness of a conductor");
 }
 
+void check_dye(const SlabDye& dye) {
+    check_spectrum(dye.absorption);
+    check_spectrum(dye.emission);
+    require_finite(dye.concentration, "concentration");
+    require_finite(dye.quantum_yield, "quantum yield");
+    if (dye.shares)
+        check_matrix(*dye.shares);
+}
+
 } // namespace
 
 void check_spectrum(const Spectrum& spectrum) {
@@ -46,7 +55,11 @@ void check_stack(const LayerStack& stack) {
             require_finite(value, "layer");
         if (layer.flakes)
             check_conductor(layer.flakes->reflector);
+        for (const SlabDye& dye : layer.dyes)
+            check_dye(dye);
     }
+    if (stack.lower_face)
+        require_finite(stack.lower_face->alpha, "roughness of a lower face");
 }
 
 void check_material(const Material& material) {

@@ -155,7 +155,7 @@ TEST(GeometryMatrix, NamesAreRead) {
     EXPECT_NE(refusal("45/8").find("8/de"), std::string::npos) << "lists those that there are";
     EXPECT_NE(refusal("95:0").find("below the horizon"), std::string::npos) << refusal("95:0");
     EXPECT_NE(refusal("20:-5").find("negative"), std::string::npos) << refusal("20:-5");
-    EXPECT_NE(refusal("0:180").find("transmit nothing"), std::string::npos) << refusal("0:180");
+    EXPECT_NE(refusal("0:180").find("of what is reflected"), std::string::npos) << refusal("0:180");
 }
 
 TEST(GeometryMatrix, BareMaterialIsItsMatrixInEveryGeometry) {
@@ -256,4 +256,48 @@ TEST(GeometryMatrix, AWhiteLosslessStackSendsAllBack) {
     };
     EXPECT_LT(off("8/d"), 1e-6);
     EXPECT_LT(off("d/8"), 1e-6);
+}
+
+// A sheet in air is the same as one over black: what passes it meets nothing. n = 1.5 reflects 0.04
+// at each face, and 2 * 0.04 / 1.04 from both.
+TEST(GeometryMatrix, ASheetReflectsFromBothFaces) {
+    Material sheet;
+    sheet.stack.layers.emplace_back();
+    sheet.stack.lower_face.emplace();
+    sheet.substrate.type = SubstrateType::None;
+    const Eigen::MatrixXd values = factors(sheet, "0:0");
+    EXPECT_EQ(values.cwiseAbs().maxCoeff(), 0.0) << "a mirror's reflection has no direction";
+    const Eigen::MatrixXd at_8_degrees = factors(sheet, "8/d");
+    EXPECT_NEAR(at_8_degrees(0, 0), 2.0 * 0.04 / 1.04, 1e-4) << "at 8 degrees hardly more";
+    EXPECT_LT(largest_error(factors(sheet, "d/8"), at_8_degrees), 1e-12);
+}
+
+TEST(GeometryMatrix, WhatIsNotComputedForDyesAndSheetsIsRefused) {
+    Material dyed;
+    dyed.stack.layers.emplace_back().dyes.push_back(
+        {Spectrum::constant(1.0), 1.0, Spectrum::gaussian(600.0, 20.0, 1.0), 0.9, nullptr});
+    EXPECT_THROW(factors(dyed, "d/8"), Error);
+    EXPECT_THROW(factors(dyed, "de/8"), Error);
+    Material walked;
+    walked.stack.layers.emplace_back().flakes = Flakes{0.2, {}};
+    walked.stack.lower_face.emplace();
+    walked.substrate.type = SubstrateType::None;
+    EXPECT_THROW(factors(walked, "8/de"), Error);
+    EXPECT_LT(largest_error(factors(walked, "d/8"), factors(walked, "8/d")), 1e-12);
+}
+
+TEST(GeometryMatrix, BandsAreThoseOfTheSharesWhereTheSubstrateHasNone) {
+    Material dyed;
+    Layer& layer = dyed.stack.layers.emplace_back();
+    EXPECT_EQ(measured_bands(dyed, {}), grid_from_range(380, 780, 10));
+    layer.dyes.push_back(
+        {Spectrum::constant(1.0), 1.0, Spectrum::gaussian(600.0, 20.0, 1.0), 0.9, nullptr});
+    EXPECT_EQ(measured_bands(dyed, {}), grid_from_range(300, 780, 10));
+    const WavelengthGrid own = grid_from_range(400, 600, 50);
+    layer.dyes[0].shares = std::make_shared<const ReradiationMatrix>(
+        ReradiationMatrix{own, own, Eigen::MatrixXd::Identity(5, 5)});
+    EXPECT_EQ(measured_bands(dyed, {}), own);
+    dyed.substrate.matrix = std::make_shared<const ReradiationMatrix>(
+        ReradiationMatrix{{400, 40, 2}, {400, 40, 2}, Eigen::MatrixXd::Identity(2, 2)});
+    EXPECT_THROW(measured_bands(dyed, {}), Error);
 }

@@ -252,6 +252,19 @@ class BadInput(unittest.TestCase):
         self.refused(["unknown key"], rr.synth, {"fluorophores": []})
         self.refused(["seed"], rr.synth, EXAMPLES / "synth-orange.toml", seed=-1)
 
+    def test_dyes_in_layers_and_sheets(self):
+        dye = {"absorption": 1, "emission": rr.Spectrum.gaussian(600, 20)}
+        layer = {"ior": 1.5, "fluorophores": [dye]}
+        white = {"type": "lambert", "reflectance": 0.9}
+        self.refused(["dyes in layers"], rr.Stack, [layer])
+        self.refused(["layer"], rr.measure, {"substrate": {"type": "none"}})
+        self.refused(["lower face"], rr.measure,
+                     {"layer": [layer], "substrate": white, "back": {"alpha": 0.1}})
+        self.refused(["between the slabs"], rr.measure, {"layer": [layer], "substrate": white},
+                     model="weidlich-wilkie")
+        dye["concentration"] = -1
+        self.refused(["concentration is -1"], rr.measure, {"layer": [layer], "substrate": white})
+
     def test_stacks(self):
         self.refused(["ior"], rr.Stack, [{"thickness": 1}])
         self.refused(["at least one"], rr.Stack, [])

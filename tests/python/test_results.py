@@ -192,6 +192,15 @@ class Objects(unittest.TestCase):
             from_file = rr.render(scene, spp=1, seed=2, folder=folder)
         np.testing.assert_array_equal(from_object.values, from_file.values)
 
+    def test_matrix_in_a_layer_is_the_shares_of_a_dye(self):
+        nm = np.arange(400, 701, 50)
+        shares = rr.Reradiation.from_fluorophores(
+            [(rr.Spectrum.constant(1), rr.Spectrum.gaussian(580, 25), 0.9)],
+            emission_nm=nm, excitation_nm=nm)
+        dye = {"absorption": rr.Spectrum.gaussian(450, 30), "shares": shares}
+        sheet = {"layer": [{"ior": 1.5, "fluorophores": [dye]}], "substrate": {"type": "none"}}
+        np.testing.assert_array_equal(rr.measure(sheet, hemispherical=True).nm, nm)
+
     def test_spectrum_in_a_scene(self):
         lamp = rr.Spectrum([400, 600, 700], [1, 3, 2]) + rr.Spectrum.line(546, 1, 50)
         bands = (400, 700, 10)

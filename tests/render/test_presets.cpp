@@ -17,6 +17,8 @@ std::vector<Material> presets() {
     for (const std::string& name : preset_names()) {
         materials.push_back(load_material(spectra_directory() / "materials" / (name + ".toml")));
         materials.back().name = name;
+        if (materials.back().stack.is_sheet()) // of which the renderer makes no pictures
+            materials.pop_back();
     }
     return materials;
 }

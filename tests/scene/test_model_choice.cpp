@@ -88,5 +88,75 @@ TEST(ModelChoice, AddingByNameIsRefusedWhereItCannotDoTheMaterial) {
     }
 }
 
+Material dyed() {
+    Material material = lacquer();
+    material.stack.layers.front().dyes.push_back(
+        {Spectrum::constant(1.0), 1.0, Spectrum::gaussian(600.0, 20.0, 1.0), 0.9, nullptr});
+    return material;
+}
+Material sheet() {
+    Material material = lacquer();
+    material.stack.lower_face.emplace();
+    material.substrate.type = SubstrateType::None;
+    return material;
+}
+void add_flakes(Material& material) {
+    material.stack.layers.front().flakes = flaked().stack.layers.front().flakes;
+}
+
+TEST(ModelChoice, DyesAndSheetsAreForAddingWhereverItCanDoThem) {
+    for (const ModelUse use : {ModelUse::Measure, ModelUse::Render, ModelUse::RenderHero})
+        EXPECT_EQ(choose_model(dyed(), Model::Auto, use).model, Model::Adding);
+    const ModelChoice choice = choose_model(sheet(), Model::Auto, ModelUse::Measure);
+    EXPECT_EQ(choice.model, Model::Adding);
+    EXPECT_NE(choice.reason.find("sheet"), std::string::npos);
+}
+
+TEST(ModelChoice, WeidlichWilkieIsRefusedForDyesAndSheets) {
+    for (Material material : {dyed(), sheet()}) {
+        EXPECT_THROW(choose_model(material, Model::WeidlichWilkie, ModelUse::Measure), Error);
+        material.model = Model::WeidlichWilkie;
+        EXPECT_THROW(choose_model(material, Model::Auto, ModelUse::Render), Error);
+    }
+    Material pale = dyed();
+    pale.stack.layers.front().dyes.front().concentration = 0.0;
+    EXPECT_EQ(choose_model(pale, Model::WeidlichWilkie, ModelUse::Render).model,
+              Model::WeidlichWilkie);
+}
+
+TEST(ModelChoice, AddingHasNoOrenNayarSubstratesBeneathDyes) {
+    Material material = dyed();
+    material.substrate.type = SubstrateType::OrenNayar;
+    material.substrate.sigma = 0.3;
+    EXPECT_EQ(choose_model(material, Model::Auto, ModelUse::Measure).model, Model::Walk);
+    EXPECT_THROW(choose_model(material, Model::Adding, ModelUse::Measure), Error);
+    material.substrate.sigma = 0.0; // a Lambertian substrate
+    EXPECT_EQ(choose_model(material, Model::Auto, ModelUse::Measure).model, Model::Adding);
+}
+
+void expect_no_picture(const Material& material, Model model, const char* reason) {
+    for (const ModelUse use : {ModelUse::Render, ModelUse::RenderHero}) {
+        try {
+            choose_model(material, model, use);
+            ADD_FAILURE() << "not refused";
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+        }
+    }
+}
+
+/// What adding cannot do is measured by the walk, and no picture is made of it by approximation.
+TEST(ModelChoice, DyesAndSheetsBeyondAddingAreMeasuredAndNotRendered) {
+    for (Material material : {dyed(), sheet()}) {
+        add_flakes(material);
+        EXPECT_EQ(choose_model(material, Model::Auto, ModelUse::Measure).model, Model::Walk);
+    }
+    expect_no_picture(sheet(), Model::Auto, "does not know sheets");
+    expect_no_picture(dyed(), Model::Walk, "the renderer's walk does not know dyes");
+    Material flaked_dye = dyed();
+    add_flakes(flaked_dye);
+    expect_no_picture(flaked_dye, Model::Auto, "the renderer's walk does not know dyes");
+}
+
 } // namespace
 } // namespace reradiant

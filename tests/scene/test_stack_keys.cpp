@@ -159,9 +159,9 @@ TEST_F(StackKeys, AddingIsRefusedForMirrors) {
         return "[material]\nmodel = \"adding\"\n" + rest;
     };
     expect_error(with_model("substrate = { type = \"conductor\", metal = \"gold\" }\n"), 2, 1,
-                 "needs a diffuse substrate");
+                 "adding does not know conductors");
     expect_error(
         with_model("layer = [ { ior = 1.5, flakes = { coverage = 0.1, metal = \"gold\" } } "
                    "]\nsubstrate = { type = \"lambert\" }\n"),
-        2, 1, "has no flakes");
+        2, 1, "adding does not know flakes");
 }

@@ -77,5 +77,13 @@ TEST(CellMeasurement, PolarCurveHasTheHighlightOnTheMirrorSide) {
     EXPECT_GT(*peak, 10.0 * curve.diffuse[0]);
 }
 
+TEST(CellMeasurement, SheetsAreRefusedForWhatTheyTransmit) {
+    Material sheet;
+    sheet.stack.layers.emplace_back();
+    sheet.stack.lower_face.emplace();
+    sheet.substrate.type = SubstrateType::None;
+    EXPECT_THROW(measure_cell(sheet, {}, {lamp("D65")}), Error);
+}
+
 } // namespace
 } // namespace reradiant

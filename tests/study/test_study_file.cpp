@@ -67,6 +67,10 @@ TEST_F(StudyFile, PlacesThatAreNotThereAreRefusedWithWhatIs) {
     EXPECT_TRUE(one("parameter = \"ior\"\nlight = 0").starts_with("study.toml:5:1: ior is of no"));
     EXPECT_TRUE(one("parameter = \"ior\"\nkey = \"film.width\"").starts_with("study.toml:5:1: bo"));
     EXPECT_TRUE(one("label = \"x\"").starts_with("study.toml:3:1: the sweep has neither"));
+    EXPECT_TRUE(one("parameter = \"concentration\"\nlayer = 0")
+                    .starts_with("study.toml:4:1: the scene has no \"fluorophores\""));
+    EXPECT_TRUE(one("parameter = \"concentration\"\nfluorophore = 1")
+                    .starts_with("study.toml:4:1: the scene has no \"1\""));
 }
 
 TEST_F(StudyFile, SweepOfWhichNoValueIsRightIsRefusedAtItsFirstValue) {

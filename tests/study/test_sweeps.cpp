@@ -73,6 +73,34 @@ TEST_F(Sweeps, ConcentrationFollowsBeerAndLambert) {
     EXPECT_EQ(dye(twice).quantum_yield, 0.8);
 }
 
+TEST_F(Sweeps, ConcentrationsAndThicknessOfDyedLayersAreSwept) {
+    put("dyed.toml", "[material]\n[[material.layer]]\nior = 1.5\nthickness = 2\n"
+                     "fluorophores = [ { absorption = 1, concentration = 0.5, emission = { "
+                     "gaussian_nm = 600, sigma_nm = 20 } }, { absorption = 2, emission = { "
+                     "gaussian_nm = 650, sigma_nm = 20 } } ]\n"
+                     "[material.substrate]\ntype = \"lambert\"\n");
+    const auto layer = [&](const std::string& sweep, std::size_t value = 1) {
+        const Study study = load("[study]\nmaterial = \"dyed.toml\"\n[[sweep]]\n" + sweep);
+        const Sweep& only = study.sweeps[0];
+        return scene_with(study, {{&only, &only.values[value]}}).materials[0].stack.layers[0];
+    };
+    const Layer of_all = layer("parameter = \"concentration\"\nlayer = 0\nvalues = [1, 4]");
+    EXPECT_EQ(of_all.dyes[0].concentration, 2.0) << "times what the file has";
+    EXPECT_EQ(of_all.dyes[1].concentration, 4.0);
+    const std::string second =
+        "parameter = \"concentration\"\nlayer = 0\nfluorophore = 1\nvalues = [0, 3]";
+    EXPECT_EQ(layer(second).dyes[0].concentration, 0.5);
+    EXPECT_EQ(layer(second).dyes[1].concentration, 3.0);
+    EXPECT_EQ(layer(second, 0).dyes[1].concentration, 0.0) << "no dye at all";
+    EXPECT_EQ(layer("key = \"material.sample.layer.0.fluorophores.0.concentration\"\n"
+                    "values = [1, 4]")
+                  .dyes[0]
+                  .concentration,
+              4.0)
+        << "by its key it is the number itself";
+    EXPECT_EQ(layer("parameter = \"thickness\"\nvalues = [1, 3]").thickness, 3.0);
+}
+
 TEST_F(Sweeps, MatrixIsLookedForBesideTheStudyAndReplacesReflectance) {
     put("grey.toml", "[material]\n[material.substrate]\ntype = \"lambert\"\nreflectance = 0.5\n");
     put("matrix.csv", "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"

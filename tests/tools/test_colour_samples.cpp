@@ -205,7 +205,7 @@ TEST_F(ColourSamples, WhatIsNoSampleIsNamed) {
     expect_failure(2, "colour --preset fluorescent-orange-smooth --geometry 95:0",
                    "below the horizon");
     expect_failure(2, "colour --preset fluorescent-orange-smooth --geometry 0:180",
-                   "transmit nothing");
+                   "of what is reflected");
 }
 
 TEST_F(ColourSamples, OutputsAreCheckedBeforeWorkBegins) {

@@ -1,6 +1,11 @@
 #include "tools/commands/describe_material.h"
 
+#include "host/scene/model/fluorescence_ranges.h"
+
 #include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
 
 namespace reradiant {
 
@@ -30,6 +35,40 @@ int variant_count(const Scene& scene, const Surface& surface) {
     return count;
 }
 
+std::string range_text(const std::array<double, 2>& range_nm) {
+    return range_nm[1] > 0.0 ? fmt::format("{} to {} nm", range_nm[0], range_nm[1]) : "nothing";
+}
+
+/// Returns the count of dyes in all layers, and what they absorb and emit; empty without dyes.
+Json describe_dyes(const LayerStack& stack) {
+    std::size_t count = 0;
+    std::array<double, 2> absorbed{};
+    for (const Layer& layer : stack.layers) {
+        count += layer.dyes.size();
+        for (const SlabDye& dye : layer.dyes) {
+            const std::array<double, 2> own = support_nm(dye.absorption);
+            if (layer.thickness > 0.0 && dye.absorbs() && own[1] > 0.0)
+                absorbed = absorbed[1] > 0.0 ? std::array{std::min(absorbed[0], own[0]),
+                                                          std::max(absorbed[1], own[1])}
+                                             : own;
+        }
+    }
+    if (count == 0)
+        return {};
+    return {{"count", count},
+            {"absorb", range_text(absorbed)},
+            {"emit", range_text(fluorescence_ranges(stack).emission)}};
+}
+
+std::string face_text(const LowerFace& face) {
+    if (face.alpha == 0.0)
+        return "smooth";
+    constexpr std::array distributions{"blinn", "beckmann", "ggx"};
+    return fmt::format("{}, alpha {:.6g}, {}",
+                       distributions.at(static_cast<std::size_t>(face.distribution)), face.alpha,
+                       face.scattering == Scattering::Multiple ? "multiple" : "single");
+}
+
 } // namespace
 
 Json describe_material(const Material& material) {
@@ -43,12 +82,16 @@ Json describe_material(const Material& material) {
                    {"films", material.stack.has_films() || substrate.conductor.film.has_value()},
                    {"flakes", material.stack.has_flakes()},
                    {"substrate", substrate_name(substrate.type)},
-                   {"fluorescent", substrate.is_fluorescent()}};
-    if (substrate.is_fluorescent()) {
-        const auto excitation = substrate.excitation_range_nm();
-        const auto emission = substrate.emission_range_nm();
-        result["excited"] = fmt::format("{} to {} nm", excitation[0], excitation[1]);
-        result["emits"] = fmt::format("{} to {} nm", emission[0], emission[1]);
+                   {"sheet", material.stack.is_sheet()},
+                   {"fluorescent", material.is_fluorescent()}};
+    if (material.stack.is_sheet())
+        result["lower_face"] = face_text(*material.stack.lower_face);
+    if (Json dyes = describe_dyes(material.stack); !dyes.empty())
+        result["dyes"] = std::move(dyes);
+    if (material.is_fluorescent()) {
+        const FluorescenceRanges ranges = fluorescence_ranges(material);
+        result["excited"] = range_text(ranges.excitation);
+        result["emits"] = range_text(ranges.emission);
     }
     return result;
 }

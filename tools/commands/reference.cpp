@@ -56,6 +56,7 @@ mix = { with = "b", weight = { texture = "c" } }
 layer = [
   { ior = 1.5, roughness_deg = 5, distribution = "ggx", scattering = "multiple", thickness = { texture = "c", low = 0, high = 1 }, absorption = 0, scattering_coefficient = 0, anisotropy = 0, film = { thickness_nm = 300, ior = 1.4 } },
   { ior = 1.5, alpha = 0.1, flakes = { coverage = 0.1, metal = "silver", alpha = 0.1, distribution = "ggx", scattering = "single", film = { thickness_nm = 300, ior = 1.4 } } },
+  { ior = 1.5, fluorophores = [{ absorption = { gaussian_nm = 450, sigma_nm = 20 }, concentration = 1, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9 }, { absorption = 0.1, shares = { file = "synthetic-orange.csv" } }] },
   { ior = 1.5, flakes = { coverage = 0.1, ior = 0.2, kappa = 3, roughness_deg = 5 } }]
 substrate = { type = "lambert", reflectance = { rgb = [0.5, 0.5, 0.5] } }
 [[material]]
@@ -72,7 +73,9 @@ material = [
   { name = "e", substrate = { type = "lambert", thickness = 1, backing = 0.5, pigments = [{ absorption = 1, scattering = 1, concentration = 1 }], dyes = [{ absorption = { gaussian_nm = 450, sigma_nm = 20 }, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9, concentration = 1 }] } },
   { name = "f", substrate = { type = "conductor", metal = "gold", roughness_deg = 5, distribution = "ggx", scattering = "single", film = { thickness_nm = 300, ior = 1.4 } } },
   { name = "g", substrate = { type = "oren-nayar", sigma = 0.3, thickness = 1, backing = 0.5, pigments = [{ absorption = 1, scattering = 1, concentration = 1 }], dyes = [{ absorption = { gaussian_nm = 450, sigma_nm = 20 }, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9, concentration = 1 }] } },
-  { name = "h", substrate = { type = "oren-nayar", sigma = 0.3, reradiation = { file = "synthetic-orange.csv" } } }]
+  { name = "h", substrate = { type = "oren-nayar", sigma = 0.3, reradiation = { file = "synthetic-orange.csv" } } },
+  { name = "i", layer = [{ ior = 1.5 }], substrate = { type = "none" }, back = { alpha = 0.1, distribution = "ggx", scattering = "multiple" } },
+  { name = "j", layer = [{ ior = 1.5 }], substrate = { type = "none" }, back = { roughness_deg = 5 } }]
 )"};
 
 /// A folder with the files that the samples name, for as long as this lives.

@@ -108,7 +108,7 @@ std::string stack_digest(const LayerStack& stack, const WavelengthGrid& bands) {
         for (const StackElement& element : stack_at(stack, nm))
             text += std::visit([](const auto& values) { return text_of(values); }, element) + "\n";
     for (const Eigen::MatrixXd& emission : slab_emissions(stack, bands))
-        text += fmt::format("emission {}\n", fmt::join(emission.reshaped(), " "));
+        text += fmt::format("dyes {}\n", fmt::join(emission.reshaped(), " "));
     return sha256_hex(text);
 }
 

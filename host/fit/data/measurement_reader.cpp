@@ -79,13 +79,27 @@ double angle(const TextReader& reader, const TextToken& token, double below) {
     return degrees;
 }
 
+/// True for a row of light that a slab scattered, which a fit leaves out as it does the mirror's.
+/// Light of dyes in slabs, which comes out at another wavelength, is refused.
+bool is_of_slab(const TextReader& reader, const std::vector<TextToken>& tokens) {
+    if (tokens[7].text != "slab")
+        return false;
+    const bool is_shifted = reader.wavelength_nm(tokens[3]) != reader.wavelength_nm(tokens[4]);
+    if (is_shifted && !is_gap(tokens[5].text) && reader.number(tokens[5]) != 0.0)
+        throw_input_error(reader.position(tokens[7]),
+                          "the sample has dyes in its layers, and a fit takes all fluorescence for "
+                          "the substrate's",
+                          "measure a sample whose layers hold no fluorophores");
+    return true;
+}
+
 void read_row(const TextReader& reader, std::vector<TextToken> tokens, RowsByDirections& rows) {
     drop_padding(tokens, column_count);
     if (tokens.size() != column_count)
         throw_input_error(reader.position(tokens.back()),
                           fmt::format("{} values in this line", tokens.size()),
                           fmt::format("write {}", headings));
-    if (tokens[7].text == "specular" || tokens[7].text == "slab")
+    if (tokens[7].text == "specular" || is_of_slab(reader, tokens))
         return;
     if (tokens[7].text != "diffuse")
         throw_input_error(reader.position(tokens[7]),

@@ -90,6 +90,12 @@ MeasureRequest request_for(const std::vector<BispectralGeometry>& geometries) {
     return request;
 }
 
+/// Light of the substrate is what is looked for. That of dyes in layers goes with it, since no
+/// instrument tells the two apart.
+bool is_seen(MeasuredPart part, const LayerStack& stack) {
+    return part == MeasuredPart::Diffuse || (stack.is_dyed() && part != MeasuredPart::Specular);
+}
+
 /// The substrate in every geometry on one grid for both axes; without geometries the bare one.
 std::vector<Eigen::MatrixXd> on_common_grid(const SynthRecipe& recipe,
                                             const WavelengthGrid& bands) {
@@ -106,9 +112,9 @@ std::vector<Eigen::MatrixXd> on_common_grid(const SynthRecipe& recipe,
         const auto found =
             std::find(geometries.begin(), geometries.end(),
                       BispectralGeometry{row.theta_i_deg, row.theta_o_deg, row.phi_deg});
-        if (row.part == MeasuredPart::Diffuse && found != geometries.end())
+        if (is_seen(row.part, recipe.stack) && found != geometries.end())
             seen[static_cast<std::size_t>(found - geometries.begin())](
-                bands.band_of(row.lambda_o_nm), bands.band_of(row.lambda_i_nm)) =
+                bands.band_of(row.lambda_o_nm), bands.band_of(row.lambda_i_nm)) +=
                 std::numbers::pi * row.value;
     }
     return seen;

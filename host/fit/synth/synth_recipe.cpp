@@ -165,6 +165,15 @@ Fluorophore read_fluorophore(const toml::table& table, const std::string& file, 
     return fluorophore;
 }
 
+void read_fluorophores(const TableReader& root, SynthRecipe& recipe) {
+    const auto tables = root.tables("fluorophore");
+    if (tables.size() > most_fluorophores)
+        root.fail("fluorophore", fmt::format("the recipe has {} fluorophores", tables.size()),
+                  fmt::format("give at most {} [[fluorophore]]", most_fluorophores));
+    for (std::size_t k = 0; k < tables.size(); ++k)
+        recipe.fluorophores.push_back(read_fluorophore(*tables[k], root.file(), k));
+}
+
 /// Light is reflected or absorbed, not both: then the photon balance holds whatever the yields.
 void refuse_too_much_light(const TableReader& root, const SynthRecipe& recipe) {
     constexpr double rounding = 1e-9;
@@ -187,10 +196,21 @@ void refuse_too_much_light(const TableReader& root, const SynthRecipe& recipe) {
                   "light is either reflected or absorbed: at most 1");
 }
 
+/// The recipe's own keys are the substrate, which a sheet has not.
+void refuse_bottoms(const TableReader& material) {
+    if (material.has("back"))
+        material.fail("back", "synth measures a substrate through layers, and a sheet has none",
+                      "leave [material.back] out");
+    if (material.has("substrate"))
+        material.fail("substrate", "a recipe's fluorophores and reflectance are the substrate",
+                      "leave [material.substrate] out");
+}
+
 void read_stack(const TableReader& root, SynthRecipe& recipe, LoadState& state) {
     if (!root.has("material"))
         return;
-    const TableReader material = root.table("material", {"layer"});
+    const TableReader material = root.table("material", {"layer", "substrate", "back"});
+    refuse_bottoms(material);
     const auto layers = material.tables("layer");
     for (std::size_t k = 0; k < layers.size(); ++k) {
         recipe.stack.layers.push_back(read_layer(*layers[k], root.file(), k, state));
@@ -266,17 +286,16 @@ SynthRecipe synth_recipe_from_table(const toml::table& table, const std::filesys
         recipe.emission = read_grid(root, "emission_nm");
     if (root.has("excitation_nm"))
         recipe.excitation = read_grid(root, "excitation_nm");
-    const auto fluorophores = root.tables("fluorophore");
-    if (fluorophores.empty() || fluorophores.size() > most_fluorophores)
-        root.fail("fluorophore", fmt::format("the recipe has {} fluorophores", fluorophores.size()),
-                  fmt::format("give 1 to {} [[fluorophore]]", most_fluorophores));
-    for (std::size_t k = 0; k < fluorophores.size(); ++k)
-        recipe.fluorophores.push_back(read_fluorophore(*fluorophores[k], root.file(), k));
+    read_fluorophores(root, recipe);
     if (root.has("reflectance"))
         recipe.reflectance =
             read_spectrum_key(root, "reflectance", SpectrumLimits::fraction(), state);
     refuse_too_much_light(root, recipe);
     read_stack(root, recipe, state);
+    if (recipe.fluorophores.empty() && !recipe.stack.is_dyed())
+        root.fail("fluorophore", "the recipe has 0 fluorophores",
+                  fmt::format("give 1 to {} [[fluorophore]], or fluorophores in a layer",
+                              most_fluorophores));
     read_geometries(root, recipe);
     read_instrument(root, recipe);
     state.warn_outside(std::min(recipe.emission.from_nm, recipe.excitation.from_nm),

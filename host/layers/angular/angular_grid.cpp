@@ -101,4 +101,8 @@ double CellFit::evaluate(const Eigen::VectorXd& coefficients, double cosine) con
     return coefficients.dot(basis(cosine));
 }
 
+Eigen::VectorXd CellFit::evaluate_rows(const Eigen::MatrixXd& coefficients, double cosine) const {
+    return coefficients * basis(cosine);
+}
+
 } // namespace reradiant

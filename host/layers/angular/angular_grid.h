@@ -37,6 +37,8 @@ public:
     /// Coefficients for one vector of cell means.
     Eigen::VectorXd coefficients(const Eigen::VectorXd& cell_means) const;
     double evaluate(const Eigen::VectorXd& coefficients, double cosine) const;
+    /// Evaluates several functions, whose coefficients are rows.
+    Eigen::VectorXd evaluate_rows(const Eigen::MatrixXd& coefficients, double cosine) const;
 
 private:
     Eigen::VectorXd basis(double cosine) const;

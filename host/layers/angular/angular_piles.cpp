@@ -1,42 +1,10 @@
 #include "host/layers/angular/angular_piles.h"
 
-#include "host/layers/stack/quadrature.h"
-
-#include <algorithm>
-#include <cmath>
+#include "host/layers/angular/invariant_quadrature.h"
 
 namespace reradiant {
 
 namespace {
-
-/// Nodes on [0, 1] gathered at both ends, where transmission may start as a square root; weights
-/// that sum to 1 exactly, so that lossless media lose nothing to the rule.
-Quadrature end_gathered_rule() {
-    const Quadrature& rule = gauss_legendre(6);
-    Quadrature gathered;
-    double total = 0.0;
-    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-        const double u = 0.5 * std::numbers::pi * rule.nodes[i];
-        gathered.nodes.push_back(std::sin(u) * std::sin(u));
-        gathered.weights.push_back(rule.weights[i] * std::sin(2.0 * u));
-        total += gathered.weights.back();
-    }
-    for (double& weight : gathered.weights)
-        weight /= total;
-    return gathered;
-}
-
-/// Calls visit(q, weight) for a quadrature over the invariant q = n^2 sin^2 between the edges.
-template <typename Visit>
-void integrate_invariant(std::vector<double> edges, const Visit& visit) {
-    static const Quadrature rule = end_gathered_rule();
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
-        const double width = edges[k + 1] - edges[k];
-        for (std::size_t i = 0; width > 1e-15 && i < rule.nodes.size(); ++i)
-            visit(edges[k] + width * rule.nodes[i], rule.weights[i] * width);
-    }
-}
 
 /// Edges of the cells and critical invariants of the media, up to `limit`.
 std::vector<double> all_edges(const SmoothStack& media, std::vector<double> edges,
@@ -48,12 +16,6 @@ std::vector<double> all_edges(const SmoothStack& media, std::vector<double> edge
     edges.push_back(limit);
     std::erase_if(edges, [&](double q) { return q > limit || q < 0.0; });
     return edges;
-}
-
-/// Cell that holds the invariant, or -1 beyond the medium's range.
-int cell_at(const AngularGrid& grid, double q) {
-    const double c2 = 1.0 - q / (grid.ior * grid.ior);
-    return c2 > 0.0 ? grid.cell_of(std::sqrt(c2)) : -1;
 }
 
 SmoothResponse response_at(const SmoothStack& media, double q) {

@@ -1,7 +1,5 @@
 #include "host/layers/angular/angular_system.h"
 
-#include "host/layers/angular/scattering_slab.h"
-#include "host/layers/rough/interface_operator.h"
 #include "host/spectral/matrix/linear_systems.h"
 
 #include <algorithm>
@@ -18,7 +16,7 @@ AngularSystem::AngularSystem(std::span<const StackElement> stack) {
             continue;
         piles.push_back(smooth_pile(ior, stack.subspan(first, k - first)));
         if (const auto* slab = std::get_if<SlabValues>(&stack[k]))
-            add_slab(*slab);
+            scatterers_.push_back(scatterer_of(*slab));
         else
             add_interface(std::get<SurfaceValues>(stack[k]));
         first = k + 1;
@@ -33,40 +31,16 @@ AngularSystem::AngularSystem(std::span<const StackElement> stack) {
     air_ = air_pile(top_media_, scatterers_.front().upper);
 }
 
-void AngularSystem::add_slab(const SlabValues& slab) {
-    const double n = slab.ior;
-    const double critical = n > 1.0 ? std::sqrt((n - 1.0) * (n + 1.0)) / n : 0.0;
-    const AngularGrid grid = make_angular_grid(n, critical, interface_cells);
-    const SlabOperator op = scattering_slab(grid, slab.tau, slab.tau_scattering, slab.anisotropy);
-    Scatterer scatterer{grid, grid, Eigen::MatrixXd(2 * grid.cells(), 2 * grid.cells())};
-    scatterer.response << op.back, op.through, op.through, op.back;
-    scatterer.depth = slab.depth();
-    scatterers_.push_back(std::move(scatterer));
-}
-
 void AngularSystem::add_interface(const SurfaceValues& interface) {
-    const double above = interface.ior_above, below = interface.ior_below;
-    const bool denser = below >= above;
-    const double ratio = denser ? below / above : above / below;
-    const auto op =
-        interface_operator({ratio, interface.distribution, interface.alpha, interface.scattering});
-    const Eigen::VectorXd e = op->etendue();
-    const Eigen::MatrixXd shares = op->exchange * e.cwiseInverse().asDiagonal();
-    const Eigen::Index n = op->above.cells();
-    Scatterer rough{op->above, op->below, shares, interface.scattering == Scattering::Single};
-    if (!denser) { // the operator is stored thinner side first; the surface looks alike from below
-        std::swap(rough.upper, rough.lower);
-        rough.response << shares.bottomRightCorner(n, n), shares.bottomLeftCorner(n, n),
-            shares.topRightCorner(n, n), shares.topLeftCorner(n, n);
-    }
-    rough.upper.ior = above;
-    rough.lower.ior = below;
-    if (scatterers_.empty() && denser) {
+    if (scatterers_.empty() && interface.ior_below >= interface.ior_above) {
+        const auto op = operator_of(interface);
+        const Eigen::Index n = op->above.cells();
+        const Eigen::MatrixXd shares = op->exchange * op->etendue().cwiseInverse().asDiagonal();
         first_lobe_ = op->first_lobe;
         between_facets_ =
             (shares.topLeftCorner(n, n).colwise().sum().transpose() - first_lobe_).cwiseMax(0.0);
     }
-    scatterers_.push_back(std::move(rough));
+    scatterers_.push_back(scatterer_of(interface));
 }
 
 Eigen::Index AngularSystem::size() const {

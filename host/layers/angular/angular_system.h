@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/layers/angular/angular_piles.h"
+#include "host/layers/angular/scatterer.h"
 #include "reradiant/stack_elements.h"
 
 #include <Eigen/Core>
@@ -54,17 +55,7 @@ public:
     const Eigen::VectorXd& between_facets() const { return between_facets_; }
 
 private:
-    /// A rough interface or a slab between its neighbours; `response`(i, j): share of cell j's flux
-    /// that leaves through cell i; upper cells first, then lower ones.
-    struct Scatterer {
-        AngularGrid upper, lower;
-        Eigen::MatrixXd response;
-        bool loses = false; ///< flux that `response` lacks is lost, not absorbed
-        double depth = 0.0; ///< optical depth of a slab, scattering included
-    };
-
     void add_interface(const SurfaceValues& interface);
-    void add_slab(const SlabValues& slab);
     /// Values of outgoing flux as a linear function of the values of incoming flux.
     Eigen::MatrixXd coupling(const SubstratePile& substrate) const;
     /// Values of incoming flux, one column for each of `outgoing` and, in front of them, the share

@@ -7,6 +7,7 @@
 #include "host/layers/rough/lost_flux.h"
 #include "host/layers/rough/specular_lobes.h"
 #include "host/layers/stack/quadrature.h"
+#include "host/layers/stack/stack_variants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,17 +64,6 @@ private:
     double depth_ = 0.0;
     Eigen::VectorXd passed_, scattered_;
 };
-
-/// Counts scattering as absorption: the light that is left was not scattered.
-StackElements without_scattered(std::span<const StackElement> stack) {
-    StackElements absorbing(stack.begin(), stack.end());
-    for (StackElement& element : absorbing)
-        if (auto* slab = std::get_if<SlabValues>(&element)) {
-            slab->tau += slab->tau_scattering;
-            slab->tau_scattering = 0.0;
-        }
-    return absorbing;
-}
 
 class AngularTransport final : public AddingModel {
 public:

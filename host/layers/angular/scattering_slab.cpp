@@ -70,46 +70,80 @@ std::shared_ptr<const CellPhase> phase_of(const AngularGrid& grid, double g) {
     return phase;
 }
 
-/// Layer of optical depth `depth`: d down / d t = -a down + b up, -d up / d t = -a up + b down,
-/// with the implicit midpoint rule. Sums and differences of both directions do not mix.
-SlabOperator thin_layer(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double depth) {
-    const auto one = Eigen::MatrixXd::Identity(a.rows(), a.cols());
-    const Eigen::MatrixXd less = 0.5 * depth * (a - b), more = 0.5 * depth * (a + b);
+/// A slab's cells by their cosines, and the equation of transport between them.
+struct SlabCellsOfDirection {
+    Eigen::VectorXd width, projected; ///< integrals over a cell of 1 and of 2 cos
+    Eigen::VectorXd slant;            ///< mean of 1 / cos over its flux
+    /// Flux lost and gained per optical depth, by share of each cell's flux: d down / d t = -a down
+    /// + b up, -d up / d t = -a up + b down.
+    Eigen::MatrixXd a, b;
+};
+
+SlabCellsOfDirection transport_between(const AngularGrid& grid, double albedo, double anisotropy) {
+    const Eigen::Index n = grid.cells();
+    SlabCellsOfDirection cells{Eigen::VectorXd(n), Eigen::VectorXd(n), {}, {}, {}};
+    for (Eigen::Index j = 0; j < n; ++j) {
+        const double low = grid.edges[static_cast<std::size_t>(j)];
+        const double high = grid.edges[static_cast<std::size_t>(j) + 1];
+        cells.width(j) = high - low;
+        cells.projected(j) = (high - low) * (high + low);
+    }
+    const std::shared_ptr<const CellPhase> phase = phase_of(grid, anisotropy);
+    cells.slant = 2.0 * cells.width.cwiseQuotient(cells.projected);
+    const Eigen::VectorXd gain = 2.0 * albedo * cells.projected.cwiseInverse();
+    cells.a = Eigen::MatrixXd(cells.slant.asDiagonal()) - phase->forward * gain.asDiagonal();
+    cells.b = phase->backward * gain.asDiagonal();
+    return cells;
+}
+
+/// Layer of an optical depth by the implicit midpoint rule: what goes on within it is the mean of
+/// what is at its two faces. Sums and differences of both directions do not mix.
+EmittingSlab thin_layer(const SlabCellsOfDirection& cells, double depth) {
+    const auto one = Eigen::MatrixXd::Identity(cells.a.rows(), cells.a.cols());
+    const Eigen::MatrixXd less = 0.5 * depth * (cells.a - cells.b);
+    const Eigen::MatrixXd more = 0.5 * depth * (cells.a + cells.b);
     const Eigen::MatrixXd sum = left_quotient(one + less, one - less);
     const Eigen::MatrixXd difference = left_quotient(one + more, one - more);
-    return {0.5 * (sum - difference), 0.5 * (sum + difference)};
+    EmittingSlab slab{{0.5 * (sum - difference), 0.5 * (sum + difference)}, {}, 0.0};
+    slab.fluence = 0.5 * (cells.slant + sum.transpose() * cells.slant);
+    slab.own_fluence = 0.25 * cells.slant.cwiseProduct(slab.fluence).dot(cells.projected);
+    return slab;
+}
+
+/// Two of the same slab, one above the other.
+EmittingSlab doubled(const EmittingSlab& slab, const Eigen::VectorXd& projected) {
+    const Eigen::MatrixXd &back = slab.op.back, &through = slab.op.through;
+    const auto one = Eigen::MatrixXd::Identity(back.rows(), back.cols());
+    const Eigen::MatrixXd between = left_quotient(one - back * back, through);
+    EmittingSlab twice{{back + through * back * between, through * between}, {}, 0.0};
+    // by symmetry each half sends the other what it gets from it
+    const Eigen::VectorXd sent = 0.25 * slab.fluence.cwiseProduct(projected);
+    const Eigen::VectorXd exchanged = left_quotient(one - back, sent);
+    const Eigen::VectorXd leaving = 0.5 * (sent + through * exchanged);
+    twice.fluence = 4.0 * leaving.cwiseQuotient(projected);
+    twice.own_fluence = 0.5 * (slab.own_fluence + slab.fluence.dot(exchanged));
+    return twice;
+}
+
+EmittingSlab slab_by_doubling(const SlabCellsOfDirection& cells, double depth) {
+    const double first = 0.5 / cells.slant.maxCoeff();
+    const int doublings = std::max(static_cast<int>(std::ceil(std::log2(depth / first))), 0);
+    EmittingSlab slab = thin_layer(cells, std::ldexp(depth, -doublings));
+    for (int k = 0; k < doublings; ++k)
+        slab = doubled(slab, cells.projected);
+    return slab;
 }
 
 } // namespace
 
 SlabOperator scattering_slab(const AngularGrid& grid, double tau, double tau_scattering,
                              double anisotropy) {
-    const Eigen::Index n = grid.cells();
-    const std::shared_ptr<const CellPhase> phase = phase_of(grid, anisotropy);
-    Eigen::VectorXd width(n), projected(n); // of mu and of mu^2
-    for (Eigen::Index j = 0; j < n; ++j) {
-        const double low = grid.edges[static_cast<std::size_t>(j)];
-        const double high = grid.edges[static_cast<std::size_t>(j) + 1];
-        width(j) = high - low;
-        projected(j) = (high - low) * (high + low);
-    }
     const double total = tau + tau_scattering;
-    // flux lost and gained per unit of optical depth, by share of each cell's flux
-    const Eigen::VectorXd slant = 2.0 * width.cwiseQuotient(projected);
-    const Eigen::VectorXd gain = 2.0 * tau_scattering / total * projected.cwiseInverse();
-    const Eigen::MatrixXd a =
-        Eigen::MatrixXd(slant.asDiagonal()) - phase->forward * gain.asDiagonal();
-    const Eigen::MatrixXd b = phase->backward * gain.asDiagonal();
-    const double first = 0.5 / slant.maxCoeff();
-    const int doublings = std::max(static_cast<int>(std::ceil(std::log2(total / first))), 0);
-    SlabOperator slab = thin_layer(a, b, std::ldexp(total, -doublings));
-    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
-    for (int k = 0; k < doublings; ++k) {
-        const Eigen::MatrixXd between = left_quotient(one - slab.back * slab.back, slab.through);
-        slab.back += slab.through * slab.back * between;
-        slab.through = slab.through * between;
-    }
+    const SlabCellsOfDirection cells = transport_between(grid, tau_scattering / total, anisotropy);
+    SlabOperator slab = slab_by_doubling(cells, total).op;
     if (tau == 0.0) { // rounding grows with every doubling
+        const Eigen::Index n = grid.cells();
+        const Eigen::VectorXd& projected = cells.projected;
         Eigen::MatrixXd exchange(2 * n, 2 * n);
         const Eigen::MatrixXd back = slab.back * projected.asDiagonal();
         const Eigen::MatrixXd through = slab.through * projected.asDiagonal();
@@ -120,6 +154,16 @@ SlabOperator scattering_slab(const AngularGrid& grid, double tau, double tau_sca
         slab.through = exchange.topRightCorner(n, n) * projected.cwiseInverse().asDiagonal();
     }
     return slab;
+}
+
+std::vector<EmittingSlab> emitting_slabs(const AngularGrid& grid, double tau, double tau_scattering,
+                                         double anisotropy, int count) {
+    const double total = tau + tau_scattering;
+    const SlabCellsOfDirection cells = transport_between(grid, tau_scattering / total, anisotropy);
+    std::vector<EmittingSlab> slabs{slab_by_doubling(cells, total)};
+    while (static_cast<int>(slabs.size()) < count)
+        slabs.push_back(doubled(slabs.back(), cells.projected));
+    return slabs;
 }
 
 } // namespace reradiant

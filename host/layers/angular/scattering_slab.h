@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <vector>
+
 namespace reradiant {
 
 /// A `SlabOperator` says how a slab reflects and transmits azimuthally averaged flux in its own
@@ -24,5 +26,17 @@ struct SlabOperator {
 /// doubling (van de Hulst 1963). Reciprocal; without absorption nothing is lost.
 SlabOperator scattering_slab(const AngularGrid& grid, double tau, double tau_scattering,
                              double anisotropy);
+
+/// A scattering slab that sends light out, the same everywhere in it and in all directions. Its
+/// power is 1.
+struct EmittingSlab {
+    SlabOperator op;
+    Eigen::VectorXd fluence; ///< mean in the slab per flux that enters through a cell, either side
+    double own_fluence;      ///< mean in the slab per power that it sends out
+};
+
+/// Returns slabs of the thickness given, of twice that, and so on, `count` of them.
+std::vector<EmittingSlab> emitting_slabs(const AngularGrid& grid, double tau, double tau_scattering,
+                                         double anisotropy, int count);
 
 } // namespace reradiant

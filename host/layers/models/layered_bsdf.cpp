@@ -4,8 +4,11 @@
 #include "host/layers/rough/specular_lobes.h"
 #include "host/layers/stack/directions.h"
 #include "host/layers/stack/quadrature.h"
+#include "host/layers/stack/slab_emission.h"
+#include "host/layers/stack/stack_variants.h"
 #include "kernels/scatter/oren_nayar.h"
 #include "kernels/stack/layer_stack.h"
+#include "reradiant/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,17 +66,74 @@ LayeredBsdf::LayeredBsdf(const LayerStack& stack, const SubstrateValues& substra
                          const WavelengthGrid& bands, ClosedModel model)
     : has_conductor_(!substrate.conductor.empty()), sigma_(substrate.sigma),
       first_(substrate.matrix), choices_(std::make_shared<Choices>()) {
-    Eigen::VectorXd r(bands.count);
     for (int band = 0; band < bands.count; ++band) {
-        stacks_.push_back(stack_over(stack_at(stack, bands.centre_nm(band)),
-                                     substrate.at_band(static_cast<std::size_t>(band))));
-        const bool same = like_the_last(band);
-        models_.push_back(same ? models_.back() : model(stacks_.back()));
-        r(band) = same ? r(band - 1) : models_.back()->internal_reflectance(sigma_);
+        stacks_.push_back(stack_at(stack, bands.centre_nm(band)));
+        if (!stack.is_sheet())
+            stacks_.back() = stack_over(std::move(stacks_.back()),
+                                        substrate.at_band(static_cast<std::size_t>(band)));
     }
-    rest_ = has_conductor_ ? Eigen::MatrixXd::Identity(bands.count, bands.count)
-                           : effective_matrix(kernels::oren_nayar_mean_albedo(sigma_) * first_, r);
+    make_models(model);
+    if (is_sheet() || has_conductor_) {
+        first_ = Eigen::MatrixXd::Zero(bands.count, bands.count);
+        rest_ = has_conductor_ ? Eigen::MatrixXd::Identity(bands.count, bands.count) : first_;
+    } else {
+        Eigen::VectorXd r(bands.count);
+        for (int band = 0; band < bands.count; ++band)
+            r(band) = like_the_last(band) ? r(band - 1) : at(band).internal_reflectance(sigma_);
+        rest_ = effective_matrix(kernels::oren_nayar_mean_albedo(sigma_) * first_, r);
+    }
+    coupling_ = rest_;
+    if (stack.is_dyed())
+        make_emitting(stack, bands);
     lobes_ = at(bands.count / 2).lobes();
+}
+
+/// Models of neighbouring bands that do not differ are the same.
+void LayeredBsdf::make_models(ClosedModel model) {
+    const bool scattering = std::any_of(stacks_.begin(), stacks_.end(), [](const auto& elements) {
+        return without_scattered(elements) != elements;
+    });
+    for (int band = 0; band < bands(); ++band) {
+        const StackElements& elements = stacks_[static_cast<std::size_t>(band)];
+        const bool same = like_the_last(band);
+        if (std::holds_alternative<SurfaceValues>(elements.back()) && !conductor_of(elements)) {
+            sheets_.push_back(same ? sheets_.back()
+                                   : std::make_shared<SheetTransmission>(elements));
+            continue;
+        }
+        models_.push_back(same ? models_.back() : model(elements));
+        unscattered_.push_back(same         ? unscattered_.back()
+                               : scattering ? model(without_scattered(elements))
+                                            : models_.back());
+    }
+}
+
+void LayeredBsdf::make_emitting(const LayerStack& stack, const WavelengthGrid& bands) {
+    if (has_conductor_ || sigma_ > 0.0)
+        throw_input_error({}, "adding knows dyes in layers above a Lambertian substrate alone",
+                          "use the model walk");
+    DyedStack dyed{stacks_, slab_emissions(stack, bands), {}};
+    if (!is_sheet())
+        dyed.substrate = first_;
+    emitting_ = std::make_shared<EmittingStack>(std::move(dyed));
+    for (const Eigen::MatrixXd& slab : slab_emissions(stack, bands))
+        if (slab.size() > 0)
+            coupling_ += slab;
+    // what goes from one band to another may go on from there
+    for (int via = 0; via < this->bands(); ++via)
+        for (int i = 0; i < this->bands(); ++i)
+            if (coupling_(via, i) != 0.0)
+                coupling_.col(i) += coupling_.col(via).cwiseAbs();
+}
+
+const StackBsdf& LayeredBsdf::whole(int band, Side side) const {
+    const auto k = static_cast<std::size_t>(band);
+    return is_sheet() ? sheets_[k]->whole(side) : *models_[k];
+}
+
+const StackBsdf& LayeredBsdf::unscattered(int band, Side side) const {
+    const auto k = static_cast<std::size_t>(band);
+    return is_sheet() ? sheets_[k]->unscattered(side) : *unscattered_[k];
 }
 
 bool LayeredBsdf::like_the_last(int band) const {
@@ -81,13 +141,84 @@ bool LayeredBsdf::like_the_last(int band) const {
     return k > 0 && stacks_[k] == stacks_[k - 1];
 }
 
+namespace {
+
+Side side_of(const Vec3& w) {
+    return w.z > 0.0 ? Side::Above : Side::Below;
+}
+Vec3 mirrored_above(const Vec3& w) {
+    return kernels::vec3(w.x, w.y, std::fabs(w.z));
+}
+AirDirection air_direction(const Vec3& w) {
+    return {std::fabs(w.z), side_of(w)};
+}
+
+/// What dyes and substrate send out, without what never reached the substrate.
+template <typename Light>
+Eigen::MatrixXd reached_substrate(const Light& light) {
+    return (light(EmittingStack::Part::All) - light(EmittingStack::Part::Slab)).cwiseMax(0.0);
+}
+
+} // namespace
+
 Eigen::MatrixXd LayeredBsdf::eval(const Vec3& wi, const Vec3& wo) const {
-    if (!(wi.z > 0.0) || !(wo.z > 0.0))
+    const auto is_seen = [&](const Vec3& w) { return is_sheet() ? w.z != 0.0 : w.z > 0.0; };
+    if (!is_seen(wi) || !is_seen(wo))
         return Eigen::MatrixXd::Zero(bands(), bands());
-    Eigen::MatrixXd f = diffuse(wi, wo);
-    for (int band = 0; band < bands(); ++band)
-        f(band, band) += at(band).specular(wi, wo);
+    const Parts f = parts(wi, wo);
+    return f.diffuse + f.slab + Eigen::MatrixXd(f.specular.asDiagonal());
+}
+
+LayeredBsdf::Parts LayeredBsdf::parts(const Vec3& wi, const Vec3& wo) const {
+    const Side from = side_of(wi), to = side_of(wo);
+    const Vec3 in = mirrored_above(wi), out = mirrored_above(wo);
+    const Vec3& above = from == Side::Above ? in : out;
+    const Vec3& below = from == Side::Above ? out : in;
+    Parts f{Eigen::MatrixXd::Zero(bands(), bands()), Eigen::MatrixXd::Zero(bands(), bands()),
+            Eigen::VectorXd::Zero(bands())};
+    for (int band = 0; band < bands(); ++band) {
+        if (from == to) {
+            f.specular(band) = unscattered(band, from).specular(in, out);
+            f.slab(band, band) = whole(band, from).specular(in, out) - f.specular(band);
+        } else {
+            const SheetTransmission& sheet = *sheets_[static_cast<std::size_t>(band)];
+            f.specular(band) = sheet.specular(above, below);
+            f.slab(band, band) = sheet.scattered(above.z, below.z);
+        }
+    }
+    f.slab = f.slab.cwiseMax(0.0);
+    if (emitting_)
+        f.slab += emitting_->value(air_direction(wi), air_direction(wo), EmittingStack::Part::Slab);
+    if (!is_sheet())
+        f.diffuse = diffuse(wi, wo);
     return f;
+}
+
+LayeredBsdf::Parts LayeredBsdf::albedo(const AirDirection& from, Side to) const {
+    const double c = from.cosine;
+    Parts sum{Eigen::MatrixXd::Zero(bands(), bands()), Eigen::MatrixXd::Zero(bands(), bands()),
+              Eigen::VectorXd::Zero(bands())};
+    for (int band = 0; band < bands(); ++band) {
+        if (from.side == to) {
+            sum.specular(band) = unscattered(band, to).specular_albedo(c);
+            sum.slab(band, band) = whole(band, to).specular_albedo(c) - sum.specular(band);
+        } else {
+            const SheetTransmission& sheet = *sheets_[static_cast<std::size_t>(band)];
+            sum.specular(band) = sheet.specular_albedo(c, from.side);
+            sum.slab(band, band) = sheet.scattered_albedo(c, from.side);
+        }
+    }
+    sum.slab = sum.slab.cwiseMax(0.0);
+    if (emitting_)
+        sum.slab += emitting_->albedo(from, to, EmittingStack::Part::Slab);
+    if (!is_sheet())
+        sum.diffuse = diffuse_albedo(c);
+    return sum;
+}
+
+Eigen::MatrixXd LayeredBsdf::guided(const AirDirection& from) const {
+    return emitting_ && is_sheet() ? emitting_->guided(from)
+                                   : Eigen::MatrixXd::Zero(bands(), bands());
 }
 
 /// {first M + rest B} way_in with the weights of each emitted band.
@@ -104,6 +235,10 @@ Eigen::MatrixXd LayeredBsdf::between(const WayOut& way_out, const WayIn& way_in)
 }
 
 Eigen::MatrixXd LayeredBsdf::diffuse(const Vec3& wi, const Vec3& wo) const {
+    if (emitting_)
+        return reached_substrate([&](EmittingStack::Part part) {
+            return emitting_->value(air_direction(wi), air_direction(wo), part);
+        });
     if (has_conductor_) {
         Eigen::VectorXd diagonal(bands());
         for (int band = 0; band < bands(); ++band)
@@ -115,6 +250,10 @@ Eigen::MatrixXd LayeredBsdf::diffuse(const Vec3& wi, const Vec3& wo) const {
 }
 
 Eigen::MatrixXd LayeredBsdf::diffuse_albedo(double c) const {
+    if (emitting_)
+        return reached_substrate([&](EmittingStack::Part part) {
+            return emitting_->albedo({c, Side::Above}, Side::Above, part);
+        });
     if (has_conductor_)
         return conductor_albedo(c);
     const Vec3 wi = direction_at(c, 0.0);
@@ -164,10 +303,17 @@ std::vector<double> LayeredBsdf::breaks_of_all(double cos_i) const {
     return breaks_between_0_and_1(breaks);
 }
 
-Eigen::VectorXd LayeredBsdf::delta(double cos_theta) const {
+Eigen::VectorXd LayeredBsdf::delta(double cos_theta, Side from) const {
     Eigen::VectorXd weight(bands());
     for (int band = 0; band < bands(); ++band)
-        weight(band) = at(band).delta(cos_theta);
+        weight(band) = whole(band, from).delta(cos_theta);
+    return weight;
+}
+
+Eigen::VectorXd LayeredBsdf::straight_on(double cos_theta) const {
+    Eigen::VectorXd weight = Eigen::VectorXd::Zero(bands());
+    for (int band = 0; is_sheet() && band < bands(); ++band)
+        weight(band) = sheets_[static_cast<std::size_t>(band)]->delta(cos_theta);
     return weight;
 }
 

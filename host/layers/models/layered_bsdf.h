@@ -1,6 +1,8 @@
 #pragma once
 
+#include "host/layers/models/sheet_transmission.h"
 #include "host/layers/models/stack_bsdf.h"
+#include "host/layers/sources/emitting_stack.h"
 #include "host/layers/stack/substrate_values.h"
 #include "reradiant/wavelength_grid.h"
 
@@ -17,8 +19,9 @@ namespace reradiant {
 /// directions, and what a path asks when it goes on along one ray. Unit vectors in the local frame
 /// (z = normal), both pointing away. The walk's own triple is LayerWalk.
 ///
-/// Light is `diffuse` where it reached the substrate, of whatever type, and `specular` where it
-/// never did; what a band says of the latter is its StackBsdf's.
+/// Light is `diffuse` where it reached the substrate, of whatever type; else `slab` where it was
+/// scattered in a slab or sent out again by dyes in one; else `specular`. A sheet has two sides,
+/// and directions with z < 0 lie below it.
 ///
 /// Directions are chosen for all bands together: from the rough lobes of interfaces, flakes and a
 /// conductor, from the cosine, or the mirror's, by the mean shares of the light that they carry.
@@ -30,22 +33,37 @@ public:
     LayeredBsdf(const LayerStack& stack, const SubstrateValues& substrate,
                 const WavelengthGrid& bands, ClosedModel model);
 
-    int bands() const { return static_cast<int>(models_.size()); }
-    const StackBsdf& at(int band) const { return *models_[static_cast<std::size_t>(band)]; }
+    int bands() const { return static_cast<int>(stacks_.size()); }
+    bool is_sheet() const { return !sheets_.empty(); }
+    /// The model at a band, of a sheet as seen from above.
+    const StackBsdf& at(int band) const { return whole(band, Side::Above); }
     /// (bands, bands), rows = emission: zero where no light can go from one band to another.
-    const Eigen::MatrixXd& coupling() const { return rest_; }
+    const Eigen::MatrixXd& coupling() const { return coupling_; }
+    /// The dyes' own light; null where no slab holds any.
+    const EmittingStack* emitting() const { return emitting_.get(); }
 
     /// The BSDF without the cosine and without deltas, 1/sr, per band: (bands, bands), rows =
-    /// emission; light comes from wi. Zero unless both are above the surface.
+    /// emission; light comes from wi. Zero unless both are above the surface or this is a sheet.
     Eigen::MatrixXd eval(const kernels::Vec3& wi, const kernels::Vec3& wo) const;
-    /// The diffuse part of it, for directions above the surface.
+
+    /// Light by where it has been: (bands, bands), rows = emission; specular light keeps its band.
+    struct Parts {
+        Eigen::MatrixXd diffuse, slab;
+        Eigen::VectorXd specular;
+    };
+    /// The BSDF likewise, part by part, for directions on sides that there are.
+    Parts parts(const kernels::Vec3& wi, const kernels::Vec3& wo) const;
+    /// Directional-hemispherical shares on a side, deltas included, unit 1.
+    Parts albedo(const AirDirection& from, Side to) const;
+    /// Share that total reflection guides in a sheet for ever: (bands, bands), rows = emission.
+    Eigen::MatrixXd guided(const AirDirection& from) const;
+    /// The diffuse part of `parts` and of `albedo`, for directions above the surface.
     Eigen::MatrixXd diffuse(const kernels::Vec3& wi, const kernels::Vec3& wo) const;
-    /// Directional-hemispherical share of the diffuse part, the delta of a smooth conductor
-    /// included: (bands, bands), rows = emission, unit 1. That of the specular part is
-    /// specular_albedo of each band.
     Eigen::MatrixXd diffuse_albedo(double cos_theta) const;
-    /// Weight of the mirror delta at every band, unit 1.
-    Eigen::VectorXd delta(double cos_theta) const;
+    /// Weight of the mirror delta at every band, unit 1, and of the direction straight through a
+    /// sheet.
+    Eigen::VectorXd delta(double cos_theta, Side from = Side::Above) const;
+    Eigen::VectorXd straight_on(double cos_theta) const;
 
     struct Sample {
         kernels::Vec3 w{}; ///< may lie below the surface: then nothing goes on
@@ -68,6 +86,10 @@ private:
     struct Choices;
 
     bool like_the_last(int band) const;
+    void make_models(ClosedModel model);
+    void make_emitting(const LayerStack& stack, const WavelengthGrid& bands);
+    const StackBsdf& whole(int band, Side side) const;
+    const StackBsdf& unscattered(int band, Side side) const;
     template <typename WayOut, typename WayIn>
     Eigen::MatrixXd between(const WayOut& way_out, const WayIn& way_in) const;
     Eigen::MatrixXd conductor_albedo(double cos_theta) const;
@@ -76,11 +98,14 @@ private:
     Choice choice_at_node(double cos_theta) const;
     Choice choice(double cos_theta) const;
 
-    std::vector<StackElements> stacks_; ///< by band
-    std::vector<std::shared_ptr<const StackBsdf>> models_;
+    std::vector<StackElements> stacks_;                                  ///< by band
+    std::vector<std::shared_ptr<const StackBsdf>> models_, unscattered_; ///< empty for a sheet
+    std::vector<std::shared_ptr<const SheetTransmission>> sheets_;
+    std::shared_ptr<const EmittingStack> emitting_;
     bool has_conductor_;
     double sigma_;
     Eigen::MatrixXd first_, rest_; ///< M and B of oren_nayar_substrate.h
+    Eigen::MatrixXd coupling_;
     std::vector<LobeShape> lobes_;
     std::shared_ptr<Choices> choices_;
 };

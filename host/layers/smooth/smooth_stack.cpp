@@ -22,6 +22,18 @@ FresnelPair fresnel_pair(double n_above, double n_below, double g2_above, double
     return {0.5 * (ts + tp), 0.5 * (rs * rs + rp * rp)};
 }
 
+FresnelPair filmed_pair(double n_above, double n_below, double g2_above, double g2_below,
+                        const FilmValues& film, double wavelength_nm) {
+    if (!(film.thickness_nm > 0.0))
+        return fresnel_pair(n_above, n_below, g2_above, g2_below);
+    if (g2_above <= 0.0 || g2_below <= 0.0)
+        return {0.0, 1.0};
+    const double cosine = std::min(std::sqrt(g2_above) / n_above, 1.0);
+    const double r = kernels::thin_film_reflectance(cosine, n_above, film.ior, n_below, 0.0,
+                                                    film.thickness_nm, wavelength_nm);
+    return {1.0 - r, r};
+}
+
 SmoothStack smooth_pile(double ior_above, std::span<const StackElement> run) {
     SmoothStack pile{{ior_above}, {0.0}};
     for (const StackElement& element : run) {
@@ -38,22 +50,6 @@ SmoothStack smooth_pile(double ior_above, std::span<const StackElement> run) {
 }
 
 namespace {
-
-/// The two shares at interface k of a stack.
-FresnelPair interface_pair(const SmoothStack& stack, std::size_t k, double g2_above,
-                           double g2_below) {
-    const double n_above = stack.ior[k], n_below = stack.ior[k + 1];
-    const bool filmed = k < stack.film.size() && stack.film[k].thickness_nm > 0.0;
-    if (!filmed)
-        return fresnel_pair(n_above, n_below, g2_above, g2_below);
-    if (g2_above <= 0.0 || g2_below <= 0.0)
-        return {0.0, 1.0};
-    const double cosine = std::min(std::sqrt(g2_above) / n_above, 1.0);
-    const double r =
-        kernels::thin_film_reflectance(cosine, n_above, stack.film[k].ior, n_below, 0.0,
-                                       stack.film[k].thickness_nm, stack.wavelength_nm);
-    return {1.0 - r, r};
-}
 
 /// Optical depth along the path; infinite where the path is evanescent in an absorber.
 double slant_depth(double tau, double ior, double g2) {
@@ -87,7 +83,9 @@ SmoothResponse smooth_response_g2(const SmoothStack& stack, double reference_ior
         if (k + 1 == stack.ior.size())
             break;
         const double below = g2_of(k + 1);
-        const FresnelPair f = interface_pair(stack, k, g2, below);
+        const FilmValues film = k < stack.film.size() ? stack.film[k] : FilmValues{};
+        const FresnelPair f =
+            filmed_pair(stack.ior[k], stack.ior[k + 1], g2, below, film, stack.wavelength_nm);
         // 1 - rf R' with R' = 1 - w, as a sum of positive terms
         const double divisor = f.transmittance + f.reflectance * w;
         if (divisor > 0.0) {

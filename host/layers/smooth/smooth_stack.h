@@ -51,5 +51,8 @@ struct FresnelPair {
     double transmittance, reflectance;
 };
 FresnelPair fresnel_pair(double n_above, double n_below, double g2_above, double g2_below);
+/// Returns the same with a film on the interface, if it has a thickness.
+FresnelPair filmed_pair(double n_above, double n_below, double g2_above, double g2_below,
+                        const FilmValues& film, double wavelength_nm);
 
 } // namespace reradiant

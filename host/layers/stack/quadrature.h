@@ -15,6 +15,11 @@ struct Quadrature {
 /// polynomial and kept for later calls. Thread-safe.
 const Quadrature& gauss_legendre(int count);
 
+/// Calls visit(c, weight) for the nodes of the rule that `integrate_sin2` takes; the weights count
+/// in pi / 2 (to - from).
+template <typename Visit>
+void for_sin2_nodes(double from, double to, int count, const Visit& visit);
+
 /// Returns the integral of f over [from, to] by c = from + (to - from) sin^2 u with Gauss-Legendre
 /// in u: exact to 4e-12 with 64 nodes for integrands with square-root ends (critical cosines).
 template <typename Function>
@@ -29,17 +34,22 @@ double integrate_pieces(const std::vector<double>& breaks, int count, const Func
 /// merged.
 std::vector<double> breaks_between_0_and_1(std::vector<double> inner);
 
-template <typename Function>
-double integrate_sin2(double from, double to, int count, const Function& f) {
+template <typename Visit>
+void for_sin2_nodes(double from, double to, int count, const Visit& visit) {
     const Quadrature& rule = gauss_legendre(count);
     const double half_pi = 0.5 * std::numbers::pi;
-    double sum = 0.0;
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
         const double s = std::sin(half_pi * rule.nodes[i]);
         const double c = std::cos(half_pi * rule.nodes[i]);
-        sum += rule.weights[i] * 2.0 * s * c * f(from + (to - from) * s * s);
+        visit(from + (to - from) * s * s, rule.weights[i] * 2.0 * s * c);
     }
-    return sum * half_pi * (to - from);
+}
+
+template <typename Function>
+double integrate_sin2(double from, double to, int count, const Function& f) {
+    double sum = 0.0;
+    for_sin2_nodes(from, to, count, [&](double c, double weight) { sum += weight * f(c); });
+    return sum * 0.5 * std::numbers::pi * (to - from);
 }
 
 template <typename Function>

@@ -2,17 +2,31 @@
 
 #include "reradiant/reradiation.h"
 
+#include <algorithm>
+
 namespace reradiant {
 
 namespace {
 
+/// Returns the share of a target cell that lies in a source cell.
+double covered(const WavelengthGrid& target, int cell, const WavelengthGrid& source, int from) {
+    const double overlap = std::min(target.upper_edge_nm(cell), source.upper_edge_nm(from)) -
+                           std::max(target.lower_edge_nm(cell), source.lower_edge_nm(from));
+    return std::max(0.0, overlap) / target.step_nm;
+}
+
+/// Returns the shares on other bands. What a band sends out within itself stays within the bands
+/// that lie in it: interpolated between bands, it could add up to more than was absorbed with what
+/// is sent out elsewhere.
 Eigen::MatrixXd given_shares(const ReradiationMatrix& shares, const WavelengthGrid& bands) {
     if (shares.emission == bands && shares.excitation == bands)
         return shares.values;
     Eigen::MatrixXd values = fluorescence_on_cells(shares, bands);
-    const Spectrum within = shares.reflectance();
-    for (int band = 0; band < bands.count; ++band)
-        values(band, band) += within(bands.centre_nm(band));
+    for (int from = 0; from < shares.excitation.count; ++from)
+        if (const int row = diagonal_row(shares, from); row >= 0)
+            for (int band = 0; band < bands.count; ++band)
+                values(band, band) +=
+                    covered(bands, band, shares.excitation, from) * shares.values(row, from);
     return values;
 }
 

@@ -2,6 +2,7 @@
 
 #include "host/layers/models/weidlich_wilkie_bsdf.h"
 #include "host/layers/walk/walk_surface.h"
+#include "host/render/tables/dyed_operator.h"
 #include "host/render/tables/stack_optics.h"
 #include "host/render/tables/substrate_operator.h"
 #include "host/scene/model/closed_model.h"
@@ -51,6 +52,8 @@ public:
         else
             plan_closed_model();
         plan_substrate();
+        if (material_.stack.is_dyed())
+            plan_dyes();
         return std::move(plan_);
     }
 
@@ -241,6 +244,27 @@ private:
         plan_.counts.floats += (has_first ? 2 : 1) * (1 + factors + dense) * row_;
         if (fluoresces && wavelengths_.hero > 0)
             plan_.counts.floats += lanes_ * row_; // probabilities of each shift
+    }
+
+    /// Dyes and substrate send out light together. Under adding they do so by channels.
+    void plan_dyes() {
+        const auto refuse = [&](const char* reason, const char* remedy) {
+            throw_input_error(material_.position,
+                              fmt::format("material '{}': {}", material_.name, reason), remedy);
+        };
+        if (plan_.choice.model != Model::Adding)
+            refuse("dyes in layers are rendered by adding alone", "use the model adding");
+        if (wavelengths_.hero > 0)
+            refuse("dyes in layers do not go with hero wavelengths", "take --wavelengths comb");
+        if (plan_.features.reflectance_image)
+            refuse("a reflectance beneath dyed layers cannot be an image",
+                   "give it one reflectance, or make the concentration of a dye follow the image");
+        plan_.dyes =
+            std::make_shared<DyedOperator>(dyed_operator(material_, *plan_.on_cells, wavelengths_));
+        const auto channels = static_cast<std::uint64_t>(plan_.dyes->channels);
+        plan_.features.dyes = true;
+        plan_.features.dye_channels = plan_.dyes->channels;
+        plan_.counts.floats += channels * spectral_nodes() + channels * channels * lanes_ * row_;
     }
 
     /// True where light is spread on its way to the substrate at the middle of the spectrum, for

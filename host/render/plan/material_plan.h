@@ -10,6 +10,7 @@
 
 namespace reradiant {
 
+struct DyedOperator;
 struct SubstrateOnCells;
 
 /// A slab's optical depths at normal passage, [phase][lane].
@@ -34,6 +35,9 @@ struct MaterialPlan {
     RenderFeatures features; ///< the bits and sizes that this material needs
     TableCounts counts;
     std::shared_ptr<const SubstrateOnCells> on_cells; ///< of a conductor: nothing
+
+    /// What dyes in the slabs send out, and the substrate with them; null without dyes.
+    std::shared_ptr<const DyedOperator> dyes;
 
     // closed models
     bool has_delta = false, has_residual = false; ///< a mirror, light between facets or slabs

@@ -63,6 +63,7 @@ void RenderFeatures::add(const RenderFeatures& other) {
         this->*bit.value |= other.*bit.value;
     lobes = std::max(lobes, other.lobes);
     walk_layers = std::max(walk_layers, other.walk_layers);
+    dye_channels = std::max(dye_channels, other.dye_channels);
 }
 
 KernelDefines RenderFeatures::defines() const {
@@ -74,6 +75,7 @@ KernelDefines RenderFeatures::defines() const {
     defines.emplace_back("LOBES", lobes);
     defines.emplace_back("HERO", hero);
     defines.emplace_back("WALK_LAYERS", walk_layers);
+    defines.emplace_back("DYE_CHANNELS", dye_channels);
     if (in_double)
         defines.emplace_back("KERNELS_IN_DOUBLE", 1);
     return defines;

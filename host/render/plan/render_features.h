@@ -18,6 +18,7 @@ struct RenderFeatures {
     int chunks = 1, film_chunks = 1, lobes = 0;
     int hero = 0;           ///< wavelengths of a path's set; 0: all lanes
     int walk_layers = 1;    ///< most layers of a material that is walked through
+    int dye_channels = 1;   ///< most channels of a material with dyes
     bool in_double = false; ///< directions, probabilities and factors in double precision
 
     static RenderFeatures all();

@@ -1,5 +1,8 @@
 #include "reradiant/wavelength_plan.h"
 
+#include "host/layers/stack/slab_emission.h"
+#include "host/scene/model/fluorescence_ranges.h"
+#include "host/scene/model/matrix_grids.h"
 #include "host/scene/model/substrate.h"
 #include "kernels/core/features.h"
 #include "reradiant/reradiation.h"
@@ -47,9 +50,13 @@ std::vector<bool> active_cells(const Scene& scene, const WavelengthGrid& cells) 
                                                       cells.upper_edge_nm(c)))
                 active[static_cast<std::size_t>(c)] = true;
     std::vector<Eigen::MatrixXd> matrices;
-    for (const Material& material : scene.materials)
+    for (const Material& material : scene.materials) {
         if (material.substrate.is_fluorescent())
             matrices.push_back(fluorescence_of(material.substrate, cells));
+        for (Eigen::MatrixXd& dyes : slab_emissions(material.stack, cells))
+            if (dyes.size() > 0)
+                matrices.push_back(std::move(dyes));
+    }
     for (bool changed = true; changed;) {
         changed = false;
         for (const Eigen::MatrixXd& matrix : matrices)
@@ -59,10 +66,8 @@ std::vector<bool> active_cells(const Scene& scene, const WavelengthGrid& cells) 
 }
 
 /// Returns true when some light is emitted below the wavelength that excites it.
-bool has_anti_stokes(const Substrate& substrate) {
-    if (!substrate.matrix)
-        return false; // fluorophores emit above it only
-    const ReradiationMatrix& matrix = *substrate.matrix;
+bool has_anti_stokes_emission(const ReradiationMatrix* pointer) {
+    const ReradiationMatrix& matrix = *pointer;
     const Eigen::MatrixXd fluorescence = matrix.fluorescent_part();
     for (int i = 0; i < matrix.excitation.count; ++i)
         for (int o = 0; o < matrix.emission.count; ++o)
@@ -83,12 +88,13 @@ WavelengthGrid cells_with_excitation(const Scene& scene, const WavelengthGrid& f
     const double from = film.lower_edge_nm(0), to = film.upper_edge_nm(film.count - 1);
     double lowest = from, highest = to;
     for (const Material& material : scene.materials) {
-        if (!material.substrate.is_fluorescent())
+        const FluorescenceRanges ranges = fluorescence_ranges(material);
+        if (ranges.is_empty())
             continue;
-        const auto [low, high] = material.substrate.excitation_range_nm();
-        lowest = std::min(lowest, low);
-        if (has_anti_stokes(material.substrate))
-            highest = std::max(highest, high);
+        lowest = std::min(lowest, ranges.excitation[0]);
+        // fluorophores emit above what excites them only
+        if (std::ranges::any_of(matrices_of(material), has_anti_stokes_emission))
+            highest = std::max(highest, ranges.excitation[1]);
     }
     const int below = steps_beyond(from - lowest, film.step_nm),
               above = steps_beyond(highest - to, film.step_nm);
@@ -243,9 +249,8 @@ bool WavelengthPlan::deposits_are_fixed() const {
 WavelengthGrid film_bands(const Scene& scene) {
     if (scene.film.bands)
         return *scene.film.bands;
-    const bool fluoresces =
-        std::any_of(scene.materials.begin(), scene.materials.end(),
-                    [](const Material& m) { return m.substrate.is_fluorescent(); });
+    const bool fluoresces = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                        [](const Material& m) { return m.is_fluorescent(); });
     return fluoresces ? WavelengthGrid{300.0, 10.0, 49} : WavelengthGrid{380.0, 10.0, 41};
 }
 

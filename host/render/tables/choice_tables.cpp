@@ -22,20 +22,13 @@ double cosine_mean(const StackBsdf& optics, double (StackBsdf::*value)(double) c
     return sum;
 }
 
-/// A `CosineLobe` holds, per lane, the size of the two components that the cosine lobe stands for.
-struct CosineLobe {
-    Eigen::VectorXd diffuse;  ///< hemispherical exitance under uniform white light, over T out
-    Eigen::VectorXd residual; ///< albedo of the residual, over its value
-};
-
-CosineLobe cosine_lobe(const MaterialOptics& optics, const LaneOperator& substrate, int phase) {
-    Eigen::VectorXd entering(substrate.diagonal.size()), residual(substrate.diagonal.size());
-    for (Eigen::Index lane = 0; lane < entering.size(); ++lane) {
-        const StackBsdf& o = optics.at(phase, static_cast<int>(lane));
-        entering(lane) = cosine_mean(o, &StackBsdf::transmission);
-        residual(lane) = std::numbers::pi * cosine_mean(o, &StackBsdf::residual_amplitude);
-    }
-    return {std::numbers::pi * substrate.row_sums().cwiseProduct(entering), residual};
+/// Albedo of the residual, over its value, by lane.
+Eigen::VectorXd residuals(const MaterialOptics& optics, int lanes, int phase) {
+    Eigen::VectorXd residual(lanes);
+    for (int lane = 0; lane < lanes; ++lane)
+        residual(lane) =
+            std::numbers::pi * cosine_mean(optics.at(phase, lane), &StackBsdf::residual_amplitude);
+    return residual;
 }
 
 struct ComponentShares {
@@ -44,18 +37,18 @@ struct ComponentShares {
 };
 
 /// Each component's share of what is reflected at one angle, mean over lanes.
-ComponentShares component_shares(const MaterialOptics& optics, const CosineLobe& lobe, int phase,
-                                 int lobes, double cosine) {
+ComponentShares component_shares(const MaterialOptics& optics, const DiffuseShare& diffuse,
+                                 const Eigen::VectorXd& residual, int phase, int lobes, int node) {
     ComponentShares result{std::vector<double>(static_cast<std::size_t>(3 + lobes), 0.0)};
-    const auto lanes = static_cast<int>(lobe.diffuse.size());
+    const auto lanes = static_cast<int>(residual.size());
+    const double cosine = node_cosine(node);
     for (int lane = 0; lane < lanes; ++lane) {
         const StackBsdf& o = optics.at(phase, lane);
         std::vector<double> here(result.shares.size(), 0.0);
         here.front() = o.delta(cosine);
         const std::vector<double> rough = o.lobe_shares(cosine);
         std::copy(rough.begin(), rough.end(), here.begin() + 1);
-        here.back() = o.transmission(cosine) * lobe.diffuse(lane) +
-                      o.residual_amplitude(cosine) * lobe.residual(lane) +
+        here.back() = diffuse(lane, node) + o.residual_amplitude(cosine) * residual(lane) +
                       o.scattered_share(cosine);
         double sum = 0.0;
         for (const double share : here)
@@ -69,14 +62,49 @@ ComponentShares component_shares(const MaterialOptics& optics, const CosineLobe&
 
 } // namespace
 
-std::uint32_t append_choice(const MaterialOptics& optics, const LaneOperator& substrate, int lobes,
+DiffuseShare substrate_share(const MaterialOptics& optics, const LaneOperator& substrate,
+                             int phase) {
+    Eigen::VectorXd entering(substrate.diagonal.size());
+    for (Eigen::Index lane = 0; lane < entering.size(); ++lane)
+        entering(lane) =
+            cosine_mean(optics.at(phase, static_cast<int>(lane)), &StackBsdf::transmission);
+    const Eigen::VectorXd sent = std::numbers::pi * substrate.row_sums().cwiseProduct(entering);
+    return [&optics, phase, sent](int lane, int node) {
+        return optics.at(phase, lane).transmission(node_cosine(node)) * sent(lane);
+    };
+}
+
+DiffuseShare dyed_share(const ChannelOperator& dyes) {
+    const auto lanes = static_cast<Eigen::Index>(dyes.reached.size());
+    const Eigen::Index channels = dyes.coupling.rows() / lanes;
+    Eigen::VectorXd entering = Eigen::VectorXd::Zero(channels * lanes);
+    for (Eigen::Index lane = 0; lane < lanes; ++lane) {
+        const Eigen::MatrixXd& reached = dyes.reached[static_cast<std::size_t>(lane)];
+        for (Eigen::Index a = 0; a < reached.cols(); ++a)
+            for (int node = 0; node + 1 < TABLE_NODES; ++node) { // trapezia in c^2
+                const double low = node_cosine(node), high = node_cosine(node + 1);
+                entering(a * lanes + lane) +=
+                    0.5 * (high - low) * (high + low) * (reached(node, a) + reached(node + 1, a));
+            }
+    }
+    const Eigen::VectorXd sent = std::numbers::pi * (dyes.coupling * entering);
+    return [&dyes, lanes, sent](int lane, int node) {
+        const Eigen::MatrixXd& reached = dyes.reached[static_cast<std::size_t>(lane)];
+        double sum = 0.0;
+        for (Eigen::Index b = 0; b < reached.cols(); ++b)
+            sum += reached(node, b) * sent(b * lanes + lane);
+        return std::max(sum, 0.0);
+    };
+}
+
+std::uint32_t append_choice(const MaterialOptics& optics, const DiffuseShare& diffuse, int lobes,
                             LaneTables& lanes) {
     const int phase = lanes.phases() / 2;
-    const CosineLobe lobe = cosine_lobe(optics, substrate, phase);
+    const Eigen::VectorXd residual = residuals(optics, lanes.lanes(), phase);
     std::vector<ComponentShares> rows;
     std::vector<double> largest(static_cast<std::size_t>(3 + lobes), 0.0);
     for (int node = 0; node < TABLE_NODES; ++node) {
-        rows.push_back(component_shares(optics, lobe, phase, lobes, node_cosine(node)));
+        rows.push_back(component_shares(optics, diffuse, residual, phase, lobes, node));
         for (std::size_t i = 0; i < largest.size(); ++i)
             largest[i] = std::max(largest[i], rows.back().shares[i]);
     }

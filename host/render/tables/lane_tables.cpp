@@ -28,6 +28,12 @@ std::uint32_t LaneTables::append_nodes(const std::function<double(double cosine)
 
 std::uint32_t LaneTables::append_nodes_of_lanes(
     const std::function<double(double cosine, int phase, int lane)>& value) {
+    return append_table(
+        [&](int node, int phase, int lane) { return value(node_cosine(node), phase, lane); });
+}
+
+std::uint32_t
+LaneTables::append_table(const std::function<double(int node, int phase, int lane)>& value) {
     const std::uint32_t offset = here();
     const int rows = phases() * TABLE_NODES;
     tables_.resize(tables_.size() +
@@ -36,7 +42,7 @@ std::uint32_t LaneTables::append_nodes_of_lanes(
     tbb::parallel_for(0, rows, [&](int row) {
         for (int lane = 0; lane < lanes_; ++lane)
             table[row * padded_ + lane] =
-                static_cast<float>(value(node_cosine(row % TABLE_NODES), row / TABLE_NODES, lane));
+                static_cast<float>(value(row % TABLE_NODES, row / TABLE_NODES, lane));
     });
     return offset;
 }

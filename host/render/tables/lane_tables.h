@@ -39,6 +39,8 @@ public:
     /// [phase][node][lane], `value` is called from several threads.
     std::uint32_t
     append_nodes_of_lanes(const std::function<double(double cosine, int phase, int lane)>& value);
+    /// The same of a function of the node's number.
+    std::uint32_t append_table(const std::function<double(int node, int phase, int lane)>& value);
 
 private:
     const WavelengthPlan& plan_;

@@ -4,6 +4,7 @@
 #include "host/layers/rough/facet_reflectance.h"
 #include "host/render/plan/material_plan.h"
 #include "host/render/tables/choice_tables.h"
+#include "host/render/tables/dyed_operator.h"
 #include "host/render/tables/substrate_tables.h"
 #include "host/scene/model/closed_model.h"
 
@@ -36,7 +37,13 @@ public:
         append_stack();
         const LaneOperator substrate = append_substrate(material_, plan_.choice.model, optics_,
                                                         *plan_.on_cells, lanes_, record_, out_);
-        record_.choice = append_choice(optics_, substrate, lobes_, lanes_);
+        append_dyes();
+        const auto middle = static_cast<std::size_t>(lanes_.phases() / 2);
+        record_.choice = append_choice(
+            optics_,
+            plan_.dyes ? dyed_share(plan_.dyes->phases[middle])
+                       : substrate_share(optics_, substrate, static_cast<int>(middle)),
+            lobes_, lanes_);
         out_.materials.push_back(record_);
     }
 
@@ -169,6 +176,42 @@ private:
             return lanes_.append_nodes([&](double c) { return value(optics_.any(), c); });
         return lanes_.append_nodes_of_lanes(
             [&](double c, int phase, int lane) { return value(optics_.at(phase, lane), c); });
+    }
+
+    /// What dyes and the substrate beneath them send out: it stands instead of the substrate's
+    /// operator, which no kernel asks for then.
+    void append_dyes() {
+        record_.dyes = record_.dye_coupling = NO_INDEX;
+        if (!plan_.dyes)
+            return;
+        const DyedOperator& dyes = *plan_.dyes;
+        record_.dye_channels = static_cast<std::uint32_t>(dyes.channels);
+        record_.dyes_shift_up = dyes.shifts_up ? 1u : 0u;
+        for (int channel = 0; channel < dyes.channels; ++channel) {
+            const std::uint32_t offset = lanes_.append_table([&](int node, int phase, int lane) {
+                return dyes.reached(phase, lane, node, channel);
+            });
+            if (channel == 0)
+                record_.dyes = offset;
+        }
+        append_dye_coupling(dyes);
+        out_.notes.push_back(fmt::format(
+            "material '{}': dyes in {} depth cells (error {:.1g}), {} functions of the direction "
+            "(error {:.1g})",
+            material_.name, dyes.cells, dyes.depth_error, dyes.channels, dyes.channel_error));
+    }
+
+    void append_dye_coupling(const DyedOperator& dyes) {
+        record_.dye_coupling = lanes_.here();
+        const int lanes = lanes_.lanes(), padded = lanes_.padded_lanes();
+        for (const ChannelOperator& phase : dyes.phases)
+            for (int a = 0; a < dyes.channels; ++a)
+                for (int i = 0; i < padded; ++i)
+                    for (int b = 0; b < dyes.channels; ++b)
+                        for (int o = 0; o < padded; ++o)
+                            lanes_.append(i < lanes && o < lanes
+                                              ? phase.coupling(b * lanes + o, a * lanes + i)
+                                              : 0.0);
     }
 
     void append_stack() {

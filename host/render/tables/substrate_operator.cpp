@@ -92,22 +92,32 @@ SemiseparableMatrix factored_on_lanes(const SubstrateOnCells& on_cells, const Wa
     return matrix;
 }
 
-/// Returns the substrate's operator off the diagonal as a matrix (lanes, lanes), rows = emission.
-Eigen::MatrixXd dense_on_lanes(const SubstrateOnCells& on_cells, const WavelengthPlan& plan) {
+} // namespace
+
+Eigen::MatrixXd cells_on_lanes(const Eigen::MatrixXd& cells, const WavelengthPlan& plan) {
     const auto lanes = static_cast<Eigen::Index>(plan.lanes.size());
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(lanes, lanes);
-    for (Eigen::Index i = 0; i < lanes; ++i)
+    for (Eigen::Index i = 0; i < lanes; ++i) {
+        const Lane& from = plan.lanes[static_cast<std::size_t>(i)];
+        matrix(i, i) = cells(from.cell, from.cell);
         for (Eigen::Index o = 0; o < lanes; ++o) {
-            const Lane& from = plan.lanes[static_cast<std::size_t>(i)];
             const Lane& to = plan.lanes[static_cast<std::size_t>(o)];
             if (!to.is_line && to.cell != from.cell)
-                matrix(o, i) =
-                    on_cells.fluorescence(to.cell, from.cell) * excitation_unit(plan, from);
+                matrix(o, i) = cells(to.cell, from.cell) * excitation_unit(plan, from);
         }
+    }
     return matrix;
 }
 
-} // namespace
+Eigen::MatrixXd substrate_on_lanes(const Substrate& substrate, const SubstrateOnCells& on_cells,
+                                   const WavelengthPlan& plan, int phase) {
+    const auto lanes = static_cast<Eigen::Index>(plan.lanes.size());
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(lanes, lanes);
+    if (on_cells.fluorescence.size() > 0)
+        matrix = cells_on_lanes(on_cells.fluorescence, plan);
+    matrix.diagonal() = lane_reflectance(substrate, on_cells, plan, phase);
+    return matrix;
+}
 
 Eigen::VectorXd LaneOperator::row_sums() const {
     Eigen::VectorXd sums = diagonal;
@@ -153,8 +163,7 @@ LaneOperator lane_operator(const Substrate& substrate, const SubstrateOnCells& o
         return result;
     }
     // Under a line a column is in 1/nm; the solve works on irradiance alike.
-    Eigen::MatrixXd matrix = albedo * dense_on_lanes(on_cells, plan);
-    matrix.diagonal() = diagonal;
+    const Eigen::MatrixXd matrix = albedo * substrate_on_lanes(substrate, on_cells, plan, phase);
     result.dense = scale.asDiagonal() * effective_matrix(matrix, r);
     result.diagonal = result.dense.diagonal();
     result.dense.diagonal().setZero();

@@ -16,6 +16,14 @@ struct SubstrateOnCells {
 
 SubstrateOnCells substrate_on_cells(const Substrate& substrate, const WavelengthGrid& cells);
 
+/// Returns re-radiation on a plan's cells, (cells, cells), as it is on the lanes, (lanes, lanes). A
+/// line only excites: it has no width to emit into, and what it excites within its own cell stays
+/// with it.
+Eigen::MatrixXd cells_on_lanes(const Eigen::MatrixXd& cells, const WavelengthPlan& plan);
+/// Returns the substrate's own matrix on the lanes at a phase, its reflectance on the diagonal.
+Eigen::MatrixXd substrate_on_lanes(const Substrate& substrate, const SubstrateOnCells& on_cells,
+                                   const WavelengthPlan& plan, int phase);
+
 /// The operator from what arrives at the substrate to what leaves it, all interreflections with
 /// the stack counted, on the plan's lanes at one phase.
 struct LaneOperator {

@@ -18,6 +18,8 @@ ClosedModel closed_model(Model model) {
 StackElements material_at(const Material& material, double wavelength_nm) {
     const Substrate& substrate = material.substrate;
     StackElements stack = stack_at(material.stack, wavelength_nm);
+    if (substrate.type == SubstrateType::None)
+        return stack;
     if (substrate.type == SubstrateType::Conductor)
         return stack_over(std::move(stack), conductor_at(substrate.conductor, wavelength_nm));
     const double sigma = substrate.type == SubstrateType::OrenNayar ? substrate.sigma : 0.0;

@@ -5,9 +5,34 @@
 namespace reradiant {
 
 std::optional<std::string> adding_refusal(const Material& material) {
-    if (material.substrate.type == SubstrateType::Conductor)
+    const Substrate& substrate = material.substrate;
+    if (substrate.type == SubstrateType::Conductor)
         return "adding does not know conductors";
+    if (substrate.type == SubstrateType::OrenNayar && substrate.sigma > 0.0 &&
+        material.stack.is_dyed())
+        return "adding does not know Oren-Nayar substrates beneath dyes";
     return adding_refusal(material.stack);
+}
+
+std::optional<std::string> weidlich_wilkie_refusal(const Material& material) {
+    if (material.stack.is_dyed())
+        return "weidlich-wilkie does not know dyes in layers: it follows no light between the "
+               "slabs";
+    if (material.stack.is_sheet())
+        return "weidlich-wilkie does not know sheets: it follows no light between the slabs";
+    return std::nullopt;
+}
+
+std::optional<ModelRefusal> model_refusal(const Material& material, Model model) {
+    const std::optional<std::string> closed_form = weidlich_wilkie_refusal(material);
+    if (model == Model::WeidlichWilkie && closed_form)
+        return ModelRefusal{*closed_form, "use the model auto, adding or walk"};
+    if (model != Model::Adding)
+        return std::nullopt;
+    if (const std::optional<std::string> refusal = adding_refusal(material))
+        return ModelRefusal{*refusal, closed_form ? "use the model auto or walk"
+                                                  : "use the model auto, walk or weidlich-wilkie"};
+    return std::nullopt;
 }
 
 std::optional<std::string> device_walk_refusal(const Material& material) {
@@ -27,7 +52,7 @@ namespace {
 ModelChoice choose_beyond_adding(const Material& material, const std::string& refusal,
                                  ModelUse use) {
     const ModelChoice walk{Model::Walk, "auto: walk, because " + refusal};
-    if (use == ModelUse::Measure)
+    if (use == ModelUse::Measure || weidlich_wilkie_refusal(material))
         return walk;
     if (material.stack.layers.empty()) {
         return {Model::WeidlichWilkie,
@@ -46,20 +71,40 @@ ModelChoice choose_beyond_adding(const Material& material, const std::string& re
     return walk;
 }
 
+ModelChoice choose_by_itself(const Material& material, ModelUse use) {
+    if (const std::optional<std::string> refusal = adding_refusal(material))
+        return choose_beyond_adding(material, *refusal, use);
+    return {Model::Adding, material.stack.is_sheet()
+                               ? "auto: adding, every interreflection within the sheet"
+                               : "auto: adding, every interreflection over the diffuse substrate"};
+}
+
+/// Refuses pictures that the renderer cannot make yet: of sheets, and of dyes in layers by its
+/// walk.
+void refuse_pictures(const Material& material, const ModelChoice& choice, ModelUse use) {
+    if (use == ModelUse::Measure)
+        return;
+    const std::string because = choice.reason.empty() ? "" : " (" + choice.reason + ")";
+    if (material.stack.is_sheet())
+        throw_input_error(material.position, "the renderer does not know sheets yet",
+                          "`reradiant measure` says what a sheet reflects and transmits");
+    if (material.stack.is_dyed() && choice.model == Model::Walk)
+        throw_input_error(
+            material.position, "the renderer's walk does not know dyes in layers yet" + because,
+            "the model adding renders them without flakes, conductors, Oren-Nayar substrates and "
+            "films on rough interfaces; `reradiant measure` walks them all");
+}
+
 } // namespace
 
 ModelChoice choose_model(const Material& material, Model requested, ModelUse use) {
     const Model model = requested == Model::Auto ? material.model : requested;
-    const std::optional<std::string> refusal = adding_refusal(material);
-    if (model == Model::Adding && refusal) {
-        throw_input_error(material.position, *refusal,
-                          "use the model auto, walk or weidlich-wilkie");
-    }
-    if (model != Model::Auto)
-        return {model, ""};
-    if (!refusal)
-        return {Model::Adding, "auto: adding, every interreflection over the diffuse substrate"};
-    return choose_beyond_adding(material, *refusal, use);
+    if (const std::optional<ModelRefusal> refusal = model_refusal(material, model))
+        throw_input_error(material.position, refusal->reason, refusal->remedy);
+    ModelChoice choice =
+        model == Model::Auto ? choose_by_itself(material, use) : ModelChoice{model, ""};
+    refuse_pictures(material, choice, use);
+    return choice;
 }
 
 } // namespace reradiant

@@ -2,6 +2,7 @@
 
 #include "reradiant/scene.h"
 
+#include <optional>
 #include <string>
 
 namespace reradiant {
@@ -16,9 +17,20 @@ struct ModelChoice {
     std::string reason;          ///< one line for the user; empty for a model asked for by name
 };
 
-/// Returns why adding cannot do a material, or nothing if it can: it needs a diffuse substrate, no
-/// flakes and no films on rough interfaces.
+/// Returns why adding cannot do a material, or nothing if it can: it needs a diffuse substrate or
+/// none, no flakes, no films on rough interfaces, and beneath dyes a Lambertian substrate.
 std::optional<std::string> adding_refusal(const Material& material);
+
+/// Returns why weidlich-wilkie cannot do a material, or nothing if it can: it follows no light
+/// between the slabs, and so has neither dyes in them nor sheets.
+std::optional<std::string> weidlich_wilkie_refusal(const Material& material);
+
+/// A reason why a model cannot do a material, and what to use instead.
+struct ModelRefusal {
+    std::string reason, remedy;
+};
+/// Returns the refusal of a model that is named for a material; nothing for auto and the walk.
+std::optional<ModelRefusal> model_refusal(const Material& material, Model model);
 
 /// Returns why the device's walk cannot do a material, or nothing if it can: an IOR that depends on
 /// wavelength sends its wavelengths different ways, a film between dielectrics splits them
@@ -30,8 +42,8 @@ std::optional<std::string> device_walk_refusal(const Material& material);
 /// interreflection in closed form. Beyond that there is no closed form that keeps the energy, and
 /// the walk is taken, which is exact and slower. A picture of a bare conductor, of which
 /// weidlich-wilkie is the plain reflection by its facets, or of what the device's walk cannot do,
-/// is given to weidlich-wilkie; the reason says so. Input Error for adding, when named, on a
-/// material that it cannot do.
+/// is given to weidlich-wilkie; the reason says so. Input Error for a model, when named, on a
+/// material that it cannot do, for pictures of sheets, and for those of dyes in layers by the walk.
 ModelChoice choose_model(const Material& material, Model requested, ModelUse use);
 
 } // namespace reradiant

@@ -1,5 +1,6 @@
 #include "host/scene/toml/material_reader.h"
 
+#include "host/scene/model/model_choice.h"
 #include "host/scene/model/textured_value.h"
 #include "host/scene/toml/stack_reader.h"
 #include "kernels/core/shared.h"
@@ -20,15 +21,26 @@ namespace {
 constexpr std::size_t MAX_LEVEL_TEXTURES = 3;
 constexpr std::size_t MAX_VARIANTS = 512;
 
-void refuse_adding_of_mirrors(const TableReader& reader, const Material& material) {
-    if (material.model != Model::Adding)
+/// A material that names a model which cannot do it is refused at that key.
+void refuse_model(const TableReader& reader, const Material& material) {
+    if (const std::optional<ModelRefusal> refusal = model_refusal(material, material.model))
+        reader.fail("model", refusal->reason, refusal->remedy);
+}
+
+/// Reads what lies at the bottom: a substrate, or the lower face of a sheet.
+void read_bottom(const TableReader& reader, Material& material, LoadState& state) {
+    material.substrate = read_substrate(reader, state);
+    if (material.substrate.type != SubstrateType::None) {
+        if (reader.has("back"))
+            reader.fail("back", "only a sheet has a lower face, and this material has a substrate",
+                        "leave [material.back] out, or write type = \"none\" in "
+                        "[material.substrate]");
         return;
-    constexpr const char* remedy = "use auto, walk or weidlich-wilkie";
-    if (material.substrate.type == SubstrateType::Conductor)
-        reader.fail("model", "the model \"adding\" needs a diffuse substrate, not a conductor",
-                    remedy);
-    if (material.stack.has_flakes())
-        reader.fail("model", "the model \"adding\" has no flakes", remedy);
+    }
+    if (material.stack.layers.empty())
+        reader.fail("substrate", "the substrate is \"none\" and there is no layer",
+                    "a sheet needs at least one [[material.layer]]");
+    material.stack.lower_face = read_lower_face(reader, state);
 }
 
 /// The material at the levels that the textures stand at.
@@ -45,8 +57,8 @@ Material read_at_levels(const TableReader& reader, LoadState& state) {
                     fmt::format("give at most {}", MAX_LAYERS));
     for (std::size_t i = 0; i < layers.size(); ++i)
         material.stack.layers.push_back(read_layer(*layers[i], reader.file(), i, state));
-    material.substrate = read_substrate(reader, state);
-    refuse_adding_of_mirrors(reader, material);
+    read_bottom(reader, material, state);
+    refuse_model(reader, material);
     return material;
 }
 
@@ -156,8 +168,9 @@ MaterialReading read_preset(const std::string& preset, const SourcePosition& at,
 MaterialReading read_material(const toml::table& table, const std::string& file,
                               MaterialPlace place, LoadState& state) {
     const std::string name = place == MaterialPlace::Scene ? "[[material]]" : "[material]";
-    const TableReader reader(table, file, name,
-                             {"name", "model", "layer", "substrate", "preset", "normal", "mix"});
+    const TableReader reader(
+        table, file, name,
+        {"name", "model", "layer", "substrate", "back", "preset", "normal", "mix"});
     if (place == MaterialPlace::Scene && reader.text("name").empty())
         reader.fail("name", "the name is empty", "give a name for shapes to refer to");
     MaterialReading reading;

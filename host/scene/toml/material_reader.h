@@ -30,6 +30,13 @@ MaterialReading read_preset(const std::string& preset, const SourcePosition& at,
 /// The [material.substrate] of a material.
 Substrate read_substrate(const TableReader& material, LoadState& state);
 
+/// Fluorophores of one substrate or layer.
+inline constexpr std::size_t MAX_FLUOROPHORES = 64;
+
+/// Reads the re-radiation matrix that `file` of a table names. One that breaks energy is refused at
+/// the key; what was repaired or breaks the photon balance is logged as a warning.
+ReradiationMatrix read_matrix_file(const TableReader& reader, LoadState& state);
+
 /// Reads the re-radiation at a key: fills matrix or fluorophores, and the reflectance. A matrix
 /// that breaks energy is refused at the key; what was repaired or breaks the photon balance is
 /// logged as a warning.

@@ -1,6 +1,7 @@
 #include "host/scene/toml/pigment_reader.h"
 
 #include "host/scene/model/textured_value.h"
+#include "host/scene/toml/fluorophore_reader.h"
 #include "host/scene/toml/spectrum_reader.h"
 #include "host/spectral/matrix/kubelka_munk.h"
 #include "reradiant/reradiation.h"
@@ -37,14 +38,11 @@ Dye read_dye(const toml::table& table, const std::string& file, std::size_t inde
                              {"absorption", "emission", "quantum_yield", "concentration"});
     Dye dye;
     dye.absorption = read_spectrum_key(reader, "absorption", COEFFICIENT, state);
-    dye.emission = read_spectrum_key(reader, "emission", SpectrumLimits::emission(), state);
-    dye.quantum_yield =
-        read_number_key_or(reader, "quantum_yield", 1.0, NumberRange::within(0.0, 1.0), state);
+    FluorescentBand band = read_fluorescent_band(reader, "dye", state);
+    dye.emission = std::move(band.emission);
+    dye.quantum_yield = band.quantum_yield;
     dye.concentration = read_number_key_or(reader, "concentration", 1.0,
                                            NumberRange::within(0.0, MAX_AMOUNT), state);
-    if (dye.emission.is_zero_within(200.0, 1000.0))
-        reader.fail("emission", "emission is zero from 200 to 1000 nm",
-                    "give the band that the dye emits");
     return dye;
 }
 

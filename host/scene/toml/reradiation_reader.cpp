@@ -1,6 +1,6 @@
 #include "host/scene/toml/material_reader.h"
 
-#include "host/scene/model/textured_value.h"
+#include "host/scene/toml/fluorophore_reader.h"
 #include "host/scene/toml/spectrum_reader.h"
 #include "host/spectral/evidence/matrix_warnings.h"
 #include "reradiant/reradiation.h"
@@ -13,8 +13,6 @@
 namespace reradiant {
 
 namespace {
-
-constexpr std::size_t MAX_FLUOROPHORES = 64;
 
 /// Refuses what breaks energy and logs what was repaired. Returns what else there is to warn of.
 std::vector<std::string> check_and_repair(ReradiationMatrix& matrix, const SourcePosition& at,
@@ -31,10 +29,7 @@ std::vector<std::string> check_and_repair(ReradiationMatrix& matrix, const Sourc
 }
 
 void read_matrix(const TableReader& reader, Substrate& substrate, LoadState& state) {
-    const SourcePosition at = reader.position_of_key("file");
-    ReradiationMatrix matrix = read_reradiation(state.resolve_and_digest(reader.text("file"), at));
-    for (const std::string& warning : check_and_repair(matrix, at, state))
-        state.warn(at, warning);
+    ReradiationMatrix matrix = read_matrix_file(reader, state);
     substrate.reflectance = matrix.reflectance();
     substrate.matrix = std::make_shared<const ReradiationMatrix>(std::move(matrix));
 }
@@ -46,16 +41,21 @@ Fluorophore read_fluorophore(const toml::table& table, const std::string& file, 
     Fluorophore fluorophore;
     fluorophore.excitation =
         read_spectrum_key(reader, "excitation", SpectrumLimits::fraction(), state);
-    fluorophore.emission = read_spectrum_key(reader, "emission", SpectrumLimits::emission(), state);
-    fluorophore.quantum_yield =
-        read_number_key_or(reader, "quantum_yield", 1.0, NumberRange::within(0.0, 1.0), state);
-    if (fluorophore.emission.is_zero_within(200.0, 1000.0))
-        reader.fail("emission", "emission is zero from 200 to 1000 nm",
-                    "give the band that the fluorophore emits");
+    FluorescentBand band = read_fluorescent_band(reader, "fluorophore", state);
+    fluorophore.emission = std::move(band.emission);
+    fluorophore.quantum_yield = band.quantum_yield;
     return fluorophore;
 }
 
 } // namespace
+
+ReradiationMatrix read_matrix_file(const TableReader& reader, LoadState& state) {
+    const SourcePosition at = reader.position_of_key("file");
+    ReradiationMatrix matrix = read_reradiation(state.resolve_and_digest(reader.text("file"), at));
+    for (const std::string& warning : check_and_repair(matrix, at, state))
+        state.warn(at, warning);
+    return matrix;
+}
 
 void read_reradiation_key(const TableReader& table, const std::string& key, Substrate& substrate,
                           LoadState& state) {

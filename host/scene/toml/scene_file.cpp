@@ -95,9 +95,8 @@ std::map<std::string, int> read_materials(const TableReader& root, Scene& scene,
 }
 
 void warn_outside_bands(const Scene& scene, const LoadState& state) {
-    const bool fluorescent =
-        std::any_of(scene.materials.begin(), scene.materials.end(),
-                    [](const Material& m) { return m.substrate.is_fluorescent(); });
+    const bool fluorescent = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                         [](const Material& m) { return m.is_fluorescent(); });
     const auto range = scene.film.bands
                            ? std::array{scene.film.bands->from_nm, scene.film.bands->to_nm()}
                            : default_range_nm(fluorescent);
@@ -187,7 +186,7 @@ Material material_from_table(const toml::table& table, const std::filesystem::pa
     if (!reading.mixed_with.empty())
         logging::info("{}: the mixture with \"{}\" is left out", file.string(), reading.mixed_with);
     Material material = std::move(reading.representative);
-    const auto range = default_range_nm(material.substrate.is_fluorescent());
+    const auto range = default_range_nm(material.is_fluorescent());
     state.warn_outside(range[0], range[1]);
     return material;
 }

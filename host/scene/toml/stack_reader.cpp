@@ -1,6 +1,7 @@
 #include "host/scene/toml/stack_reader.h"
 
 #include "host/scene/model/textured_value.h"
+#include "host/scene/toml/fluorophore_reader.h"
 #include "host/scene/toml/spectrum_reader.h"
 #include "host/spectral/text/number_table.h"
 #include "reradiant/paths.h"
@@ -146,8 +147,9 @@ Conductor read_conductor(const TableReader& reader, LoadState& state) {
 
 Layer read_layer(const toml::table& table, const std::string& file, std::size_t index,
                  LoadState& state) {
-    std::vector<std::string> keys{"ior",        "thickness", "absorption", "scattering_coefficient",
-                                  "anisotropy", "film",      "flakes"};
+    std::vector<std::string> keys{"ior",          "thickness",  "absorption",
+                                  "fluorophores", "anisotropy", "scattering_coefficient",
+                                  "film",         "flakes"};
     keys.insert(keys.end(), ROUGHNESS_KEYS.begin(), ROUGHNESS_KEYS.end());
     const TableReader reader(table, file, fmt::format("[[material.layer]] {}", index), keys);
     Layer layer;
@@ -161,6 +163,7 @@ Layer read_layer(const toml::table& table, const std::string& file, std::size_t 
     if (reader.has("absorption"))
         layer.absorption =
             read_spectrum_key(reader, "absorption", SpectrumLimits::emission(), state);
+    layer.dyes = read_slab_dyes(reader, state);
     if (reader.has("scattering_coefficient"))
         layer.scattering_coefficient =
             read_spectrum_key(reader, "scattering_coefficient", SpectrumLimits::emission(), state);
@@ -169,6 +172,13 @@ Layer read_layer(const toml::table& table, const std::string& file, std::size_t 
     layer.film = read_film(reader, state);
     layer.flakes = read_flakes(reader, state);
     return layer;
+}
+
+LowerFace read_lower_face(const TableReader& material, LoadState& state) {
+    if (!material.has("back"))
+        return {};
+    const Roughness roughness = read_roughness(material.table("back", ROUGHNESS_KEYS), state);
+    return {roughness.distribution, roughness.alpha, roughness.scattering};
 }
 
 } // namespace reradiant

@@ -5,6 +5,7 @@
 #include "host/scene/toml/spectrum_reader.h"
 #include "host/scene/toml/stack_reader.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include <fmt/core.h>
@@ -74,12 +75,31 @@ void read_diffuse_colour(const TableReader& reader, Substrate& substrate, LoadSt
             read_spectrum_key(reader, "reflectance", SpectrumLimits::fraction(), state);
 }
 
+/// Keys of the substrates that there are.
+std::vector<std::string> keys_of_substrates() {
+    std::vector<std::string> keys{"sigma", "reflectance", "reradiation"};
+    keys.insert(keys.end(), pigment_keys().begin(), pigment_keys().end());
+    keys.insert(keys.end(), conductor_keys().begin(), conductor_keys().end());
+    return keys;
+}
+
+/// A sheet has no substrate, and thus no key of one.
+void refuse_keys_of_substrates(const TableReader& material) {
+    const std::vector<std::string> keys = keys_of_substrates();
+    for (const auto& [key, node] : material.plain_table("substrate"))
+        if (std::find(keys.begin(), keys.end(), key.str()) != keys.end())
+            throw_input_error(
+                position_of(material.file(), key.source()),
+                fmt::format("the substrate is \"none\", and nothing has no {}", key.str()),
+                "leave it out; [material.back] says how rough a sheet's lower face is");
+}
+
 } // namespace
 
 Substrate read_substrate(const TableReader& material, LoadState& state) {
     const std::string type =
         type_of_table(material.plain_table("substrate"), material.file(), "[material.substrate]",
-                      {"lambert", "oren-nayar", "conductor"});
+                      {"lambert", "oren-nayar", "conductor", "none"});
     const auto keys = [&](std::vector<std::string> own) {
         own.push_back("type");
         return material.table("substrate", own);
@@ -99,6 +119,10 @@ Substrate read_substrate(const TableReader& material, LoadState& state) {
         substrate.sigma = read_number_key(reader, "sigma",
                                           NumberRange::within(0.0, 0.5 * std::numbers::pi), state);
         read_diffuse_colour(reader, substrate, state);
+    } else if (type == "none") {
+        refuse_keys_of_substrates(material);
+        keys({});
+        substrate.type = SubstrateType::None;
     } else {
         read_diffuse_colour(diffuse_keys({}), substrate, state);
     }

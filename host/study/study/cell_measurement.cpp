@@ -40,7 +40,7 @@ std::map<Directions, DirectionalMatrix> by_directions(const Measurement& measure
         if (row.part == MeasuredPart::Specular)
             entry.specular(o) = row.value;
         else if (is_reflected(row.part))
-            entry.diffuse(o, i) += row.value;
+            entry.diffuse(o, i) += row.value; // of the substrate and of slabs
     }
     return result;
 }
@@ -151,8 +151,16 @@ std::vector<double> polar_angles() {
 
 } // namespace
 
+void refuse_measured_sheet(const Material& material, const SourcePosition& at) {
+    if (material.stack.is_sheet())
+        throw_input_error(at,
+                          "a study measures what is reflected, and a sheet transmits light as well",
+                          "leave [measure] out, or use `reradiant measure` for what a sheet does");
+}
+
 CellMeasurement measure_cell(const Material& material, const StudyMeasuring& measuring,
                              const std::vector<NamedIlluminant>& illuminants) {
+    refuse_measured_sheet(material, material.position);
     CellMeasurement cell;
     MeasureRequest request;
     request.model = measuring.model;

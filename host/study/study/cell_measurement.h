@@ -36,7 +36,9 @@ struct PolarCurve {
 struct CellMeasurement {
     WavelengthGrid bands;
     std::vector<SeenColour> colours;
-    Eigen::MatrixXd matrix; ///< directional-hemispherical at the first theta_i, per-band, diffuse
+    /// Directional-hemispherical at the first theta_i, per-band: what the substrate and dyes in
+    /// layers send back.
+    Eigen::MatrixXd matrix;
     std::vector<double> specular; ///< likewise, of light that never reached the substrate
     std::vector<PolarCurve> polar;
     std::vector<std::string> notes;
@@ -47,6 +49,9 @@ struct NamedIlluminant {
     std::string name;
     Spectrum spectrum;
 };
+
+/// Input Error at `at` for a sheet, which a study does not measure.
+void refuse_measured_sheet(const Material& material, const SourcePosition& at);
 
 /// Measures a material as a study asks. Input Error as measure_material has it.
 CellMeasurement measure_cell(const Material& material, const StudyMeasuring& measuring,

@@ -2,6 +2,7 @@
 
 #include "host/scene/document/load_state.h"
 #include "host/scene/toml/scene_table.h"
+#include "host/study/study/cell_measurement.h"
 #include "host/study/study/sample_scene.h"
 #include "host/study/study/sweep_apply.h"
 #include "host/study/study/sweep_reader.h"
@@ -141,6 +142,10 @@ private:
         const Scene scene = scene_with(study_, {}); // refuses what is wrong in itself
         if (has_scene)
             choose_material(scene);
+        if (study_.measuring)
+            for (const Material& material : scene.materials)
+                if (material.name == study_.material)
+                    refuse_measured_sheet(material, root_.position_of_key("measure"));
     }
 
     /// A file that a key names; input Error at the key when it is not there.

@@ -35,6 +35,7 @@ struct Sweep {
     /// `name`. For an illuminant it is that of every light, or of the one that is chosen.
     std::vector<std::string> path;
     int index = -1; ///< of the light (Illuminant) or fluorophore (Concentration); -1: all
+    int layer = -1; ///< that holds the fluorophores (Concentration); -1: the substrate
     std::vector<SweepValue> values;
     SourcePosition position;
 };

@@ -18,6 +18,7 @@ namespace {
 
 /// Wavelengths that a dye's spectra are written out at when its concentration changes.
 constexpr int first_dye_nm = 200, last_dye_nm = 1000;
+constexpr double most_of_dye = 1e9; // times the file's; optical depths stay finite
 
 bool is_meant(int wanted, std::size_t index) {
     return wanted < 0 || static_cast<std::size_t>(wanted) == index;
@@ -109,6 +110,25 @@ void set_concentration(Substrate& substrate, int index, double concentration) {
     substrate.reflectance = Spectrum::table(std::move(nm), std::move(reflectance));
 }
 
+/// Multiplies the concentrations of dyes in a layer by a factor.
+void scale_dyes(Layer& layer, int index, double factor) {
+    for (std::size_t k = 0; k < layer.dyes.size(); ++k)
+        if (is_meant(index, k))
+            layer.dyes[k].concentration *= factor;
+}
+
+void apply_concentration(Material& material, const Sweep& sweep, const SweepValue& value) {
+    // What a substrate reflects without its dyes is not known where they absorb all light.
+    const NumberRange range =
+        sweep.layer < 0 ? NumberRange::above(0.0) : NumberRange::within(0.0, most_of_dye);
+    const double factor = number_at(value.node(), value.position, "concentration", range);
+    if (sweep.layer < 0)
+        set_concentration(material.substrate, sweep.index, factor);
+    else
+        scale_dyes(material.stack.layers.at(static_cast<std::size_t>(sweep.layer)), sweep.index,
+                   factor);
+}
+
 /// An illuminant by name keeps the light's luminance.
 void set_illuminant(Light& light, const SweepValue& value) {
     const std::string name = *value.node().value<std::string>();
@@ -128,13 +148,10 @@ void set_illuminant(Light& light, const SweepValue& value) {
 void apply_to_scene(Scene& scene, const std::string& material, const ChosenValue& chosen) {
     const Sweep& sweep = *chosen.sweep;
     const SweepValue& value = *chosen.value;
-    if (sweep.kind == SweepKind::Concentration) {
-        const double concentration =
-            number_at(value.node(), value.position, "concentration", NumberRange::above(0.0));
+    if (sweep.kind == SweepKind::Concentration)
         for (Material& one : scene.materials)
             if (one.name == material)
-                set_concentration(one.substrate, sweep.index, concentration);
-    }
+                apply_concentration(one, sweep, value);
     if (sweep.kind == SweepKind::Illuminant && value.node().is_string())
         for (std::size_t i = 0; i < scene.lights.size(); ++i)
             if (is_meant(sweep.index, i))

@@ -48,7 +48,8 @@ std::string unit_of(const Sweep& sweep) {
 
 /// Refuses the keys that choose among layers, lights or fluorophores where there is no choice.
 void refuse_choice(const TableReader& reader, const std::string& parameter) {
-    const std::pair<const char*, bool> choices[] = {{"layer", layer_keys.contains(parameter)},
+    const bool is_of_layer = layer_keys.contains(parameter) || parameter == "concentration";
+    const std::pair<const char*, bool> choices[] = {{"layer", is_of_layer},
                                                     {"light", parameter == "illuminant"},
                                                     {"fluorophore", parameter == "concentration"}};
     for (const auto& [key, fits] : choices)
@@ -77,11 +78,14 @@ void resolve_illuminant(const TableReader& reader, const Study& study, Sweep& sw
 void resolve_concentration(const TableReader& reader, const Study& study, Sweep& sweep) {
     sweep.kind = SweepKind::Concentration;
     sweep.index = reader.integer_or("fluorophore", -1, 0, most_index);
-    sweep.path = settled_path(
-        study.base, {"material", study.material, "substrate", "reradiation", "fluorophores"},
-        sweep.position);
+    sweep.layer = reader.integer_or("layer", -1, 0, most_index);
+    TomlPath all{"material", study.material, "substrate", "reradiation", "fluorophores"};
+    if (sweep.layer >= 0)
+        all = {"material", study.material, "layer", std::to_string(sweep.layer), "fluorophores"};
+    sweep.path = settled_path(study.base, all, sweep.position);
     const std::size_t of_all = sweep.path.size();
-    sweep.path.insert(sweep.path.end(), {element(sweep.index), "excitation"});
+    sweep.path.insert(sweep.path.end(),
+                      {element(sweep.index), sweep.layer < 0 ? "excitation" : "concentration"});
     node_at(study.base, sweep.path, sweep.index < 0 ? of_all : of_all + 1, sweep.position);
 }
 

@@ -80,7 +80,7 @@ class Measurement:
         matrix = np.zeros((count, count))
         o = np.rint((self.lambda_o_nm[rows] - first) / step).astype(int)
         i = np.rint((self.lambda_i_nm[rows] - first) / step).astype(int)
-        np.add.at(matrix, (o, i), self.value[rows])
+        np.add.at(matrix, (o, i), self.value[rows])  # parts of one pair of wavelengths
         return matrix
 
     def write(self, file: Any) -> None:

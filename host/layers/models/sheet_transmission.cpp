@@ -1,0 +1,109 @@
+#include "host/layers/models/sheet_transmission.h"
+
+#include "host/layers/models/adding.h"
+#include "host/layers/smooth/smooth_stack.h"
+#include "host/layers/stack/quadrature.h"
+#include "host/layers/stack/stack_variants.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace reradiant {
+
+namespace {
+
+bool is_rough(const StackElement& element) {
+    return std::holds_alternative<SurfaceValues>(element) && scatters(element);
+}
+
+bool slab_scatters(const StackElement& element) {
+    return std::holds_alternative<SlabValues>(element) && scatters(element);
+}
+
+/// The lobe of light that goes through all rough interfaces once. A lobe's passages are made on the
+/// way in and on the way out: half of each, by the terms that add up.
+LobeShape lobe_through(std::span<const StackElement> sheet) {
+    LobeShape lobe;
+    for (const StackElement& element : sheet) {
+        const auto* surface = std::get_if<SurfaceValues>(&element);
+        if (!surface || !surface->scatters())
+            continue;
+        lobe.distribution = surface->distribution;
+        const double power = surface->distribution == Distribution::Ggx ? 1.5 : 2.0;
+        lobe.passages.push_back(
+            {surface->alpha * std::pow(0.5, 1.0 / power), surface->ior_above, surface->ior_below});
+    }
+    lobe.ior = 1.0; // no facet of its own: alpha is 0
+    return lobe;
+}
+
+/// Mean of a share over diffuse light.
+template <typename Share>
+double average(const Share& share) {
+    constexpr int nodes = 48;
+    return integrate_pieces({0.0, 1.0}, nodes, [&](double c) { return 2.0 * c * share(c); });
+}
+
+double product_form(double above, double below, double average) {
+    return average > 0.0 ? above * below * std::numbers::inv_pi / average : 0.0;
+}
+
+} // namespace
+
+SheetTransmission::Sides SheetTransmission::sides_of(const StackElements& sheet) {
+    return {adding_bsdf(sheet), adding_bsdf(upside_down(sheet))};
+}
+
+SheetTransmission::SheetTransmission(const StackElements& sheet)
+    : whole_(sides_of(sheet)), scatters_(std::any_of(sheet.begin(), sheet.end(), slab_scatters)) {
+    const StackElements unscattered = without_scattered(sheet);
+    unscattered_ = scatters_ ? sides_of(unscattered) : whole_;
+    if (std::none_of(sheet.begin(), sheet.end(), is_rough)) {
+        smooth_ = unscattered;
+    } else {
+        lobe_ = lobe_through(sheet);
+        tables_ = fit_lobe(lobe_, [&](double c) { return specular_albedo(c, Side::Above); });
+        average_beside_ = average([&](double c) { return beside_lobe(c, Side::Above); });
+    }
+    if (scatters_)
+        average_scattered_ = average([&](double c) { return scattered_albedo(c, Side::Above); });
+}
+
+double SheetTransmission::delta(double cos_theta) const {
+    if (smooth_.empty())
+        return 0.0;
+    return smooth_response(smooth_pile(1.0, smooth_), 1.0, std::clamp(cos_theta, 0.0, 1.0))
+        .transmission;
+}
+
+double SheetTransmission::specular_albedo(double cos_theta, Side from) const {
+    return smooth_.empty() ? unscattered(from).transmission(cos_theta) : delta(cos_theta);
+}
+
+double SheetTransmission::scattered_albedo(double cos_theta, Side from) const {
+    if (!scatters_)
+        return 0.0;
+    return std::max(whole(from).transmission(cos_theta) - specular_albedo(cos_theta, from), 0.0);
+}
+
+double SheetTransmission::beside_lobe(double cos_theta, Side from) const {
+    return std::max(specular_albedo(cos_theta, from) - tables_.albedo(cos_theta), 0.0);
+}
+
+double SheetTransmission::specular(const kernels::Vec3& above,
+                                   const kernels::Vec3& below_mirrored) const {
+    if (!smooth_.empty())
+        return 0.0;
+    const double lobe = tables_.amplitude(above.z) * tables_.amplitude(below_mirrored.z) *
+                        lobe_value(lobe_, above, below_mirrored);
+    return lobe + product_form(beside_lobe(above.z, Side::Above),
+                               beside_lobe(below_mirrored.z, Side::Below), average_beside_);
+}
+
+double SheetTransmission::scattered(double cos_above, double cos_below) const {
+    return product_form(scattered_albedo(cos_above, Side::Above),
+                        scattered_albedo(cos_below, Side::Below), average_scattered_);
+}
+
+} // namespace reradiant

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "host/layers/models/stack_bsdf.h"
+#include "host/layers/rough/specular_lobes.h"
+#include "host/layers/sources/source_transport.h"
+
+#include <array>
+#include <memory>
+
+namespace reradiant {
+
+/// Light that goes through a sheet in air at one wavelength without being absorbed (model adding):
+/// the delta of smooth faces, a lobe of rough ones, and what slabs scatter.
+///
+/// The lobe is that of facets over the half vector of one direction and the mirror image of the
+/// other, as wide as both faces spread light (kernels/scatter/lobe_width.h). What slabs scatter has
+/// a product form, t(above) t(below) / (pi average), as the residual of the light that comes back
+/// has (reradiant/stack_model.h). Both are reciprocal between the sides and carry the flux that
+/// adding gives them.
+class SheetTransmission {
+public:
+    explicit SheetTransmission(const StackElements& sheet);
+
+    /// The sheet as seen from a side, and without what its slabs scatter.
+    const StackBsdf& whole(Side side) const { return *whole_[index(side)]; }
+    const StackBsdf& unscattered(Side side) const { return *unscattered_[index(side)]; }
+
+    /// Weight of the direction straight on, unit 1; the same from both sides.
+    double delta(double cos_theta) const;
+    /// Share of the flux from a side that goes through without being scattered in slabs, delta
+    /// included, and of that which they scatter.
+    double specular_albedo(double cos_theta, Side from) const;
+    double scattered_albedo(double cos_theta, Side from) const;
+    /// Values without deltas, 1/sr without the cosine, between a direction above and one below,
+    /// which is given by its mirror image above.
+    double specular(const kernels::Vec3& above, const kernels::Vec3& below_mirrored) const;
+    double scattered(double cos_above, double cos_below) const;
+
+private:
+    using Sides = std::array<std::shared_ptr<const StackBsdf>, 2>;
+
+    static std::size_t index(Side side) { return side == Side::Above ? 0 : 1; }
+    static Sides sides_of(const StackElements& sheet);
+    /// Share of the lobe's flux that no amplitude brings: it has a product form.
+    double beside_lobe(double cos_theta, Side from) const;
+
+    StackElements smooth_; ///< without scattering; empty where a face is rough
+    Sides whole_, unscattered_;
+    bool scatters_ = false;
+    LobeShape lobe_;
+    LobeTables tables_; ///< of the lobe
+    double average_beside_ = 0.0, average_scattered_ = 0.0;
+};
+
+} // namespace reradiant

@@ -1,0 +1,166 @@
+#include "host/layers/sources/emitting_stack.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace reradiant {
+
+namespace {
+
+/// Largest extinction depth of every slab over all bands; 0 for one without dyes.
+std::vector<double> depths_of_dyed(const DyedStack& stack) {
+    std::vector<double> depths(stack.slabs.size(), 0.0);
+    for (const StackElements& elements : stack.by_band) {
+        std::size_t slab_index = 0;
+        for (const StackElement& element : elements)
+            if (const auto* slab = std::get_if<SlabValues>(&element)) {
+                if (stack.slabs[slab_index].size() > 0)
+                    depths[slab_index] = std::max(depths[slab_index], slab->depth());
+                ++slab_index;
+            }
+    }
+    return depths;
+}
+
+StackCells cells_of(const DyedStack& stack, int cells_per_octave) {
+    StackCells cells;
+    for (const double depth : depths_of_dyed(stack))
+        cells.push_back(depth > 0.0 ? depth_cells(depth, cells_per_octave) : DepthCells{});
+    return cells;
+}
+
+} // namespace
+
+EmittingStack::EmittingStack(DyedStack stack) : stack_(std::move(stack)) {
+    constexpr int most_cells_per_octave = 32;
+    levels_ = {make_level(1), make_level(2)};
+    Eigen::MatrixXd last = probe(levels_[0], levels_[1]);
+    for (int count = 4; count <= most_cells_per_octave; count *= 2) {
+        levels_.push_back(make_level(count));
+        const Eigen::MatrixXd next = probe(*(levels_.end() - 2), levels_.back());
+        const double largest = next.cwiseAbs().maxCoeff();
+        error_ = largest > 0.0 ? (next - last).cwiseAbs().maxCoeff() / largest : 0.0;
+        last = next;
+        if (error_ <= tolerance)
+            break;
+    }
+    levels_.erase(levels_.begin(), levels_.end() - 2);
+}
+
+EmittingStack::Level EmittingStack::make_level(int cells_per_octave) const {
+    Level level{cells_of(stack_, cells_per_octave), nullptr, nullptr};
+    std::vector<std::shared_ptr<const SourceTransport>> transports(stack_.by_band.size());
+    const auto like_the_last = [&](std::size_t band) {
+        return band > 0 && stack_.by_band[band] == stack_.by_band[band - 1];
+    };
+    tbb::parallel_for(std::size_t{0}, transports.size(), [&](std::size_t band) {
+        if (!like_the_last(band))
+            transports[band] = source_transport(stack_.by_band[band], level.cells);
+    });
+    for (std::size_t band = 1; band < transports.size(); ++band)
+        if (!transports[band])
+            transports[band] = transports[band - 1];
+    level.all =
+        std::make_shared<ReEmission>(transports, level.cells, stack_.slabs, stack_.substrate);
+    level.slabs_alone = stack_.substrate.size() == 0
+                            ? level.all
+                            : std::make_shared<ReEmission>(transports, level.cells, stack_.slabs,
+                                                           Eigen::MatrixXd());
+    return level;
+}
+
+std::vector<Eigen::MatrixXd> EmittingStack::sent_by(const ReEmission& series,
+                                                    const AirDirection& from) const {
+    std::vector<Eigen::MatrixXd> sent(static_cast<std::size_t>(bands()));
+    tbb::parallel_for(Eigen::Index{0}, bands(), [&](Eigen::Index band) {
+        sent[static_cast<std::size_t>(band)] =
+            series.sent(band, series.at(band).reached(from.cosine, from.side));
+    });
+    return sent;
+}
+
+std::shared_ptr<const EmittingStack::Sent> EmittingStack::sent(const AirDirection& from,
+                                                               Part part) const {
+    constexpr std::size_t most_kept = 4;
+    const std::scoped_lock lock(mutex_);
+    for (const auto& known : recent_)
+        if (known->from == from && known->part == part)
+            return known;
+    const auto series = [&](const Level& level) -> const ReEmission& {
+        return part == Part::All ? *level.all : *level.slabs_alone;
+    };
+    auto made = std::make_shared<const Sent>(
+        Sent{from, part, sent_by(series(levels_[0]), from), sent_by(series(levels_[1]), from)});
+    recent_.push_front(made);
+    if (recent_.size() > most_kept)
+        recent_.pop_back();
+    return made;
+}
+
+/// Sums over the sources what they send out times what `weigh` says of them in every band.
+template <typename Weigh>
+Eigen::MatrixXd EmittingStack::extrapolated(const Sent& sent, const Weigh& weigh) const {
+    Eigen::MatrixXd result(bands(), bands());
+    for (Eigen::Index o = 0; o < bands(); ++o) {
+        const Eigen::VectorXd coarse = weigh(levels_[0].all->at(o));
+        const Eigen::VectorXd fine = weigh(levels_[1].all->at(o));
+        for (Eigen::Index i = 0; i < bands(); ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            result(o, i) =
+                (4.0 * fine.dot(sent.fine[k].col(o)) - coarse.dot(sent.coarse[k].col(o))) / 3.0;
+        }
+    }
+    return result;
+}
+
+Eigen::MatrixXd EmittingStack::value(const AirDirection& from, const AirDirection& to,
+                                     Part part) const {
+    return extrapolated(*sent(from, part), [&](const SourceTransport& transport) {
+        return Eigen::VectorXd(
+            std::numbers::inv_pi *
+            transport.reached(to.cosine, to.side).cwiseQuotient(transport.weights()));
+    });
+}
+
+Eigen::MatrixXd EmittingStack::albedo(const AirDirection& from, Side to, Part part) const {
+    return extrapolated(*sent(from, part),
+                        [&](const SourceTransport& transport) { return transport.escaped(to); });
+}
+
+Eigen::MatrixXd EmittingStack::guided(const AirDirection& from) const {
+    return extrapolated(*sent(from, Part::All),
+                        [](const SourceTransport& transport) { return transport.guided(); });
+}
+
+int EmittingStack::cells() const {
+    int count = 0;
+    for (const DepthCells& cells : levels_.back().cells)
+        count += cells.count();
+    return count;
+}
+
+/// What leaves above of light from above, extrapolated from two levels: (bands, excitations of two
+/// directions).
+Eigen::MatrixXd EmittingStack::probe(const Level& coarse, const Level& fine) const {
+    Eigen::MatrixXd leaving(bands(), 2 * bands());
+    Eigen::Index column = 0;
+    for (const double cosine : {1.0, 0.3}) {
+        const AirDirection from{cosine, Side::Above};
+        const std::vector<Eigen::MatrixXd> of_fine = sent_by(*fine.all, from);
+        const std::vector<Eigen::MatrixXd> of_coarse = sent_by(*coarse.all, from);
+        for (Eigen::Index i = 0; i < bands(); ++i, ++column) {
+            const auto k = static_cast<std::size_t>(i);
+            for (Eigen::Index o = 0; o < bands(); ++o) {
+                const double f = fine.all->at(o).escaped(Side::Above).dot(of_fine[k].col(o));
+                const double c = coarse.all->at(o).escaped(Side::Above).dot(of_coarse[k].col(o));
+                leaving(o, column) = (4.0 * f - c) / 3.0;
+            }
+        }
+    }
+    return leaving;
+}
+
+} // namespace reradiant

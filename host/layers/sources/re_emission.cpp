@@ -1,0 +1,99 @@
+#include "host/layers/sources/re_emission.h"
+
+#include "host/spectral/matrix/linear_systems.h"
+#include "reradiant/error.h"
+
+#include <algorithm>
+
+namespace reradiant {
+
+namespace {
+
+bool is_lower(const Eigen::MatrixXd& matrix) {
+    for (Eigen::Index i = 1; i < matrix.cols(); ++i)
+        if ((matrix.col(i).head(i).array() != 0.0).any())
+            return false;
+    return true;
+}
+
+} // namespace
+
+ReEmission::ReEmission(std::vector<std::shared_ptr<const SourceTransport>> by_band,
+                       const StackCells& cells, const std::vector<Eigen::MatrixXd>& slabs,
+                       const Eigen::MatrixXd& substrate)
+    : by_band_(std::move(by_band)) {
+    Eigen::Index first = 0;
+    for (std::size_t slab = 0; slab < cells.size(); ++slab) {
+        const int count = cells[slab].count();
+        if (count == 0)
+            continue;
+        Eigen::VectorXd shares(count);
+        for (int cell = 0; cell < count; ++cell)
+            shares(cell) = cells[slab].share(cell);
+        groups_.push_back({first, shares, slabs[slab]});
+        first += count;
+    }
+    if (substrate.size() > 0)
+        groups_.push_back({first, Eigen::VectorXd::Ones(1), substrate});
+    for (const Group& group : groups_)
+        stokes_only_ = stokes_only_ && is_lower(group.emission);
+    for (Eigen::Index band = 0; band < bands(); ++band) {
+        const Eigen::VectorXd within = within_band(band);
+        const Eigen::Index n = within.size();
+        own_series_.emplace_back();
+        if ((within.array() != 0.0).any()) {
+            const auto one = Eigen::MatrixXd::Identity(n, n);
+            own_series_.back() =
+                left_quotient(one - within.asDiagonal() * at(band).exchange(), one);
+        }
+    }
+}
+
+/// What sources send out in a band of what reaches them in the same one.
+Eigen::VectorXd ReEmission::within_band(Eigen::Index band) const {
+    Eigen::VectorXd within = Eigen::VectorXd::Zero(at(band).sources());
+    for (const Group& group : groups_)
+        within.segment(group.first, group.shares.size()) =
+            group.emission(band, band) * group.shares;
+    return within;
+}
+
+/// What they send out in it of what reaches them in all bands.
+Eigen::VectorXd ReEmission::driven(Eigen::Index band, const Eigen::MatrixXd& reached) const {
+    Eigen::VectorXd sent = Eigen::VectorXd::Zero(reached.rows());
+    const Eigen::Index last = stokes_only_ ? band + 1 : bands();
+    for (const Group& group : groups_) {
+        const auto own = reached.block(group.first, 0, group.shares.size(), last);
+        sent.segment(group.first, group.shares.size()) =
+            group.shares.cwiseProduct(own * group.emission.row(band).head(last).transpose());
+    }
+    return sent;
+}
+
+Eigen::MatrixXd ReEmission::sent(Eigen::Index excitation, const Eigen::VectorXd& reached) const {
+    constexpr int most_passes = 10000;
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(reached.size(), bands()), sent = all;
+    all.col(excitation) = reached;
+    for (int pass = 0; pass < most_passes; ++pass) {
+        double change = 0.0;
+        for (Eigen::Index band = stokes_only_ ? excitation : 0; band < bands(); ++band) {
+            // what reaches the sources in this band by their own doing is in its own series
+            all.col(band).setZero();
+            if (band == excitation)
+                all.col(band) = reached;
+            Eigen::VectorXd next = driven(band, all);
+            const Eigen::MatrixXd& series = own_series_[static_cast<std::size_t>(band)];
+            if (series.size() > 0)
+                next = series * next;
+            change = std::max(change, (next - sent.col(band)).cwiseAbs().maxCoeff());
+            sent.col(band) = next;
+            all.col(band).noalias() += at(band).exchange() * next;
+        }
+        if (stokes_only_ || change <= 1e-15 * sent.cwiseAbs().maxCoeff())
+            return sent;
+    }
+    throw_input_error({}, "what the dyes send out excites them without end",
+                      "their shares and the re-radiation matrix must send out less than they take");
+}
+
+} // namespace reradiant

@@ -1,0 +1,210 @@
+#include "host/render/tables/dyed_operator.h"
+
+#include "host/layers/stack/slab_emission.h"
+#include "host/render/tables/lane_tables.h"
+#include "host/scene/model/closed_model.h"
+#include "host/spectral/matrix/singular_values.h"
+#include "kernels/core/shared.h"
+#include "reradiant/error.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace reradiant {
+
+namespace {
+
+constexpr int most_channels = 4;
+/// Share of what reaches the cells that channels may leave out.
+constexpr double channel_tolerance = 1e-3;
+
+/// What a slab's dyes send out, on lanes.
+Eigen::MatrixXd dyes_on_lanes(const Layer& layer, const WavelengthPlan& plan, int phase) {
+    if (!layer.is_dyed())
+        return {};
+    const auto lanes = static_cast<Eigen::Index>(plan.lanes.size());
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(lanes, lanes);
+    for (const SlabDye& dye : layer.dyes) {
+        Eigen::MatrixXd sent = cells_on_lanes(dye_shares(dye, plan.comb), plan);
+        for (int lane = 0; lane < static_cast<int>(lanes); ++lane)
+            sent.col(lane) *= dye.concentration * layer.thickness *
+                              dye.absorption(plan.wavelength_nm(lane, phase));
+        sum += sent;
+    }
+    return sum;
+}
+
+/// What reaches the sources at the nodes of the tables: (TABLE_NODES, sources).
+Eigen::MatrixXd reached_at_nodes(const SourceTransport& transport) {
+    Eigen::MatrixXd reached(TABLE_NODES, transport.sources());
+    for (int node = 0; node < TABLE_NODES; ++node)
+        reached.row(node) = transport.reached(node_cosine(node), Side::Above).transpose();
+    return reached;
+}
+
+/// Square roots of the nodes' shares of a uniform radiance's flux.
+Eigen::VectorXd root_weights() {
+    Eigen::VectorXd weights(TABLE_NODES);
+    for (int node = 0; node < TABLE_NODES; ++node) {
+        const double low = node_cosine(std::max(node - 1, 0));
+        const double high = node_cosine(std::min(node + 1, TABLE_NODES - 1));
+        weights(node) = std::sqrt(0.5 * (high - low) * (high + low));
+    }
+    return weights;
+}
+
+/// The channels of one wavelength: functions of the direction, and how they make up what reaches
+/// the sources, with fine and with coarse cells: (channels, sources).
+struct Channels {
+    Eigen::MatrixXd functions, fine, coarse;
+};
+
+/// Sources by their share of the emission: those of thin cells count less.
+Eigen::VectorXd source_scales(const StackCells& cells, Eigen::Index sources) {
+    Eigen::VectorXd scales = Eigen::VectorXd::Ones(sources);
+    Eigen::Index source = 0;
+    for (const DepthCells& slab : cells)
+        for (int cell = 0; cell < slab.count(); ++cell)
+            scales(source++) = slab.share(cell);
+    return scales;
+}
+
+/// Decomposes what reaches the sources of one wavelength. `left_out` receives, by number of
+/// channels from 1 on, the share that they do not hold.
+ThinSvd decompose(const Eigen::MatrixXd& reached, const Eigen::VectorXd& scales,
+                  std::vector<double>& left_out) {
+    const ThinSvd svd = thin_svd(root_weights().asDiagonal() * reached * scales.asDiagonal());
+    const double whole = svd.s.norm();
+    for (int channels = 1; channels <= most_channels; ++channels) {
+        const Eigen::Index rest = std::max<Eigen::Index>(svd.s.size() - channels, 0);
+        const double share = whole > 0.0 ? svd.s.tail(rest).norm() / whole : 0.0;
+        double& largest = left_out[static_cast<std::size_t>(channels - 1)];
+        largest = std::max(largest, share);
+    }
+    return svd;
+}
+
+/// Operators of all phases, phase by phase: first what reaches the sources is looked at everywhere,
+/// then as many channels are made as that takes.
+class DyedOperators {
+public:
+    DyedOperators(const Material& material, const SubstrateOnCells& on_cells,
+                  const WavelengthPlan& plan)
+        : material_(material), on_cells_(on_cells), plan_(plan) {}
+
+    DyedOperator make() {
+        DyedOperator result;
+        std::vector<double> left_out(most_channels, 0.0);
+        for (int phase = 0; phase < plan_.phases; ++phase) {
+            stacks_.push_back(std::make_unique<EmittingStack>(stack_at_phase(phase)));
+            result.cells = std::max(result.cells, stacks_.back()->cells());
+            result.depth_error = std::max(result.depth_error, stacks_.back()->error());
+            add_reached(left_out);
+        }
+        result.channels = 1;
+        while (result.channels < most_channels &&
+               left_out[static_cast<std::size_t>(result.channels - 1)] > channel_tolerance)
+            ++result.channels;
+        result.channel_error = left_out[static_cast<std::size_t>(result.channels - 1)];
+        for (int phase = 0; phase < plan_.phases; ++phase) {
+            result.phases.push_back(at_phase(phase, result.channels));
+            result.shifts_up =
+                result.shifts_up && stacks_[static_cast<std::size_t>(phase)]->shifts_up();
+        }
+        return result;
+    }
+
+private:
+    DyedStack stack_at_phase(int phase) const {
+        DyedStack stack;
+        for (int lane = 0; lane < static_cast<int>(plan_.lanes.size()); ++lane)
+            stack.by_band.push_back(material_at(material_, plan_.wavelength_nm(lane, phase)));
+        for (const Layer& layer : material_.stack.layers)
+            stack.slabs.push_back(dyes_on_lanes(layer, plan_, phase));
+        if (!material_.stack.is_sheet())
+            stack.substrate = substrate_on_lanes(material_.substrate, on_cells_, plan_, phase);
+        return stack;
+    }
+
+    void add_reached(std::vector<double>& left_out) {
+        const EmittingStack& stack = *stacks_.back();
+        std::vector<Lane>& lanes = by_phase_.emplace_back(plan_.lanes.size());
+        std::vector<std::vector<double>> shares(lanes.size(), left_out);
+        tbb::parallel_for(std::size_t{0}, lanes.size(), [&](std::size_t lane) {
+            const auto band = static_cast<Eigen::Index>(lane);
+            const SourceTransport& fine = stack.fine().at(band);
+            const Eigen::VectorXd scales = source_scales(stack.fine_cells(), fine.sources());
+            lanes[lane] = {decompose(reached_at_nodes(fine), scales, shares[lane]), scales,
+                           reached_at_nodes(stack.coarse().at(band))};
+        });
+        for (const std::vector<double>& own : shares)
+            for (std::size_t k = 0; k < left_out.size(); ++k)
+                left_out[k] = std::max(left_out[k], own[k]);
+    }
+
+    struct Lane {
+        ThinSvd svd;
+        Eigen::VectorXd scales;
+        Eigen::MatrixXd coarse; ///< what reaches coarse cells, (TABLE_NODES, sources)
+    };
+
+    Channels channels_of(const Lane& lane, int count) const {
+        const Eigen::Index m = std::min<Eigen::Index>(count, lane.svd.s.size());
+        const Eigen::VectorXd weights = root_weights();
+        Channels channels;
+        const Eigen::MatrixXd u = lane.svd.u.leftCols(m);
+        channels.functions = weights.cwiseInverse().asDiagonal() * u;
+        channels.fine = lane.svd.s.head(m).asDiagonal() * lane.svd.v.leftCols(m).transpose() *
+                        lane.scales.cwiseInverse().asDiagonal();
+        channels.coarse = u.transpose() * weights.asDiagonal() * lane.coarse;
+        return channels;
+    }
+
+    ChannelOperator at_phase(int phase, int count) const {
+        const EmittingStack& stack = *stacks_[static_cast<std::size_t>(phase)];
+        const auto lanes = static_cast<Eigen::Index>(plan_.lanes.size());
+        std::vector<Channels> channels;
+        for (const Lane& lane : by_phase_[static_cast<std::size_t>(phase)])
+            channels.push_back(channels_of(lane, count));
+        ChannelOperator result;
+        for (const Channels& own : channels)
+            result.reached.push_back(own.functions);
+        result.coupling.setZero(count * lanes, count * lanes);
+        tbb::parallel_for(Eigen::Index{0}, count * lanes, [&](Eigen::Index column) {
+            const Eigen::Index a = column / lanes, i = column % lanes;
+            const Channels& own = channels[static_cast<std::size_t>(i)];
+            if (a >= own.functions.cols())
+                return;
+            const Eigen::MatrixXd fine = stack.fine().sent(i, own.fine.row(a).transpose());
+            const Eigen::MatrixXd coarse = stack.coarse().sent(i, own.coarse.row(a).transpose());
+            for (Eigen::Index o = 0; o < lanes; ++o) {
+                const Channels& to = channels[static_cast<std::size_t>(o)];
+                const Eigen::VectorXd sent =
+                    (4.0 * to.fine * fine.col(o).cwiseQuotient(stack.fine().at(o).weights()) -
+                     to.coarse * coarse.col(o).cwiseQuotient(stack.coarse().at(o).weights())) *
+                    (std::numbers::inv_pi / 3.0);
+                for (Eigen::Index b = 0; b < sent.size(); ++b)
+                    result.coupling(b * lanes + o, column) = sent(b);
+            }
+        });
+        return result;
+    }
+
+    const Material& material_;
+    const SubstrateOnCells& on_cells_;
+    const WavelengthPlan& plan_;
+    std::vector<std::unique_ptr<EmittingStack>> stacks_; ///< by phase
+    std::vector<std::vector<Lane>> by_phase_;
+};
+
+} // namespace
+
+DyedOperator dyed_operator(const Material& material, const SubstrateOnCells& on_cells,
+                           const WavelengthPlan& plan) {
+    return DyedOperators(material, on_cells, plan).make();
+}
+
+} // namespace reradiant

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "host/layers/sources/emitting_stack.h"
+#include "host/render/tables/substrate_operator.h"
+#include "reradiant/scene.h"
+#include "reradiant/wavelength_plan.h"
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <vector>
+
+namespace reradiant {
+
+/// Light that a material with dyes in its slabs sends out again, on the lanes of one phase, as the
+/// kernels have it:
+///
+/// f(wo, lo; wi, li) = sum over b, a of T_b(wo; lo) B(b lo, a li) T_a(wi; li),
+///
+/// with few channels a, b. T are the functions of the direction that best describe, at each
+/// wavelength, what reaches the depth cells and the substrate (singular vectors).
+struct ChannelOperator {
+    /// By lane: what reaches the channels, (TABLE_NODES, channels), 1 where a flux does by itself.
+    std::vector<Eigen::MatrixXd> reached;
+    /// 1/sr, (channels * lanes, channels * lanes), lanes run fastest; rows = emission.
+    Eigen::MatrixXd coupling;
+};
+
+/// A material's dyes at every phase of a plan.
+struct DyedOperator {
+    int channels = 0;
+    int cells = 0;              ///< of depth, the finest at any phase
+    double depth_error = 0.0;   ///< EmittingStack::error, the largest
+    double channel_error = 0.0; ///< share of what reaches the cells that no channel holds
+    bool shifts_up = true;      ///< nothing is sent out below what excites it
+    std::vector<ChannelOperator> phases;
+
+    /// What reaches a channel at a node's direction; 0 for a channel that a lane lacks.
+    double reached(int phase, int lane, int node, int channel) const {
+        const Eigen::MatrixXd& own =
+            phases[static_cast<std::size_t>(phase)].reached[static_cast<std::size_t>(lane)];
+        return channel < own.cols() ? own(node, channel) : 0.0;
+    }
+};
+
+/// Input Error at the material for what adding cannot do with dyes.
+DyedOperator dyed_operator(const Material& material, const SubstrateOnCells& on_cells,
+                           const WavelengthPlan& plan);
+
+} // namespace reradiant
