@@ -2,8 +2,11 @@
 
 #include "host/layers/models/layered_bsdf.h"
 #include "host/layers/stack/directions.h"
+#include "host/layers/stack/slab_emission.h"
+#include "host/layers/walk/walk_estimate.h"
 #include "host/measure/measure_memory.h"
 #include "host/measure/measure_substrate.h"
+#include "host/measure/walk_measurement.h"
 #include "host/scene/model/closed_model.h"
 #include "host/scene/model/model_choice.h"
 #include "reradiant/error.h"
@@ -110,23 +113,20 @@ Eigen::MatrixXd by_closed_model(const Material& material, const SubstrateValues&
     return values;
 }
 
-/// Refuses what is not computed for dyes in layers and for sheets.
+/// Refuses what closed models do not compute.
 void refuse_unknown(const Material& material, const ViewingGeometry& geometry, Model model) {
-    if (geometry.kind == Kind::HemisphericalDirectional && material.stack.is_dyed())
+    if (model != Model::Walk && geometry.kind == Kind::HemisphericalDirectional &&
+        material.stack.is_dyed())
         throw_input_error(material.position,
                           fmt::format("the geometry {} is not known for dyes in layers: it is "
                                       "computed as 8/d with excitation and emission exchanged, "
                                       "and only those of substrates are",
                                       geometry.name),
-                          "ask for --geometry 8/d or 45/0");
-    if (geometry.kind != Kind::Directional && material.stack.is_sheet() && model == Model::Walk)
-        throw_input_error(
-            material.position,
-            fmt::format("the geometry {} is not known for a sheet that is walked", geometry.name),
-            "ask for --geometry 45/0, or give a sheet without flakes and without films on rough "
-            "interfaces");
+                          "ask for --geometry 8/d or 45/0, or for the model walk");
 }
 
+/// By reciprocity, light that comes from everywhere and is seen at 8 degrees is light that comes at
+/// 8 degrees, runs backwards and goes everywhere, with excitation and emission exchanged.
 Eigen::MatrixXd by_walk(const Material& material, const SubstrateValues& substrate,
                         const WavelengthGrid& bands, const ViewingGeometry& geometry) {
     if (!geometry.specular_included)
@@ -134,17 +134,19 @@ Eigen::MatrixXd by_walk(const Material& material, const SubstrateValues& substra
                           "specular light is excluded by closed models only, and this material is "
                           "walked",
                           "ask for --geometry 8/d or 45/0");
-    MeasureRequest request;
-    request.model = Model::Walk;
-    request.theta_i_deg = {geometry.theta_i_deg};
-    request.theta_o_deg = {geometry.theta_o_deg};
-    request.phi_deg = {geometry.phi_deg};
-    request.hemispherical = geometry.kind != Kind::Directional;
-    const Measurement measured = measure_substrate(material.stack, substrate, bands, request);
-    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(bands.count, bands.count);
-    for (const MeasureRow& row : measured.rows)
-        values(bands.band_of(row.lambda_o_nm), bands.band_of(row.lambda_i_nm)) += row.value;
-    return request.hemispherical ? values : Eigen::MatrixXd(std::numbers::pi * values);
+    const LayerWalk forwards(material.stack, substrate, bands.centres_nm(),
+                             slab_emissions(material.stack, bands));
+    const bool is_backwards = geometry.kind == Kind::HemisphericalDirectional;
+    const bool is_directional = geometry.kind == Kind::Directional;
+    const kernels::Vec3 wi = direction_at(std::cos(radians(geometry.theta_i_deg)), 0.0);
+    const kernels::Vec3 wo =
+        direction_at(std::cos(radians(geometry.theta_o_deg)), radians(geometry.phi_deg));
+    const WalkTally mean = estimate_walk(is_backwards ? forwards.reversed() : forwards, wi,
+                                         {&wo, is_directional ? 1U : 0U}, default_walk_samples, 0)
+                               .mean;
+    if (is_directional)
+        return std::numbers::pi * all_light(mean.directional[0]);
+    return is_backwards ? all_light(mean.hemispherical).transpose() : all_light(mean.hemispherical);
 }
 
 } // namespace
@@ -178,19 +180,19 @@ ReradiationMatrix geometry_matrix(const Material& material, const ViewingGeometr
     const ModelChoice choice = choose_model(material, Model::Auto, ModelUse::Measure);
     refuse_unknown(material, geometry, choice.model);
     const WavelengthGrid bands = measured_bands(material, {});
-    check_measure_memory(bands, material.is_fluorescent(), {});
+    check_measure_memory(material, bands, {});
     SubstrateValues substrate = measured_substrate(material.substrate, bands);
-    // Reciprocity: light that comes from everywhere and is seen at 8 degrees is light that comes
-    // at 8 degrees and goes everywhere, with excitation and emission exchanged.
-    const bool is_backwards = geometry.kind == Kind::HemisphericalDirectional;
-    if (is_backwards && substrate.matrix.size() > 0)
-        substrate.matrix.transposeInPlace();
-    Eigen::MatrixXd values =
-        choice.model == Model::Walk
-            ? by_walk(material, substrate, bands, geometry)
-            : by_closed_model(material, substrate, bands, geometry, choice.model);
-    if (is_backwards)
-        values.transposeInPlace();
+    Eigen::MatrixXd values;
+    if (choice.model == Model::Walk) {
+        values = by_walk(material, substrate, bands, geometry);
+    } else {
+        const bool is_backwards = geometry.kind == Kind::HemisphericalDirectional;
+        if (is_backwards)
+            substrate.matrix.transposeInPlace();
+        values = by_closed_model(material, substrate, bands, geometry, choice.model);
+        if (is_backwards)
+            values.transposeInPlace();
+    }
     ReradiationMatrix matrix;
     matrix.emission = matrix.excitation = bands;
     matrix.values = std::move(values);

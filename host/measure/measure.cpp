@@ -4,123 +4,135 @@
 #include "host/layers/stack/directions.h"
 #include "host/measure/measure_memory.h"
 #include "host/measure/measure_substrate.h"
+#include "host/measure/row_writer.h"
 #include "host/measure/walk_measurement.h"
 #include "host/scene/model/closed_model.h"
 #include "host/scene/model/matrix_grids.h"
 #include "host/scene/model/model_choice.h"
 #include "host/scene/model/substrate.h"
 #include "reradiant/error.h"
+#include "reradiant/reradiation.h"
 
 #include <Eigen/Core>
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace reradiant {
 
 namespace {
 
-void check_request(const MeasureRequest& request) {
-    const auto check = [](const std::vector<double>& angles, const char* name, double from,
-                          double to, const char* remedy) {
-        if (angles.empty())
-            throw_input_error({}, fmt::format("{} holds no angle", name), remedy);
-        for (const double angle : angles)
-            if (!(angle >= from) || !(angle < to))
-                throw_input_error({}, fmt::format("{} of {} degrees is out of range", name, angle),
-                                  remedy);
-    };
-    const char* const polar = "angles from the normal lie between 0 and below 90 degrees";
-    check(request.theta_i_deg, "theta-i", 0.0, 90.0, polar);
-    if (!request.hemispherical) {
-        check(request.theta_o_deg, "theta-o", 0.0, 90.0, polar);
-        check(request.phi_deg, "phi", -360.0, 360.0 + 1e-9,
-              "azimuths lie between -360 and 360 degrees");
-    }
+void check_angles(const std::vector<double>& angles, const char* name, const char* remedy,
+                  const std::function<bool(double)>& is_good) {
+    if (angles.empty())
+        throw_input_error({}, fmt::format("{} holds no angle", name), remedy);
+    for (const double angle : angles)
+        if (!is_good(angle))
+            throw_input_error({}, fmt::format("{} of {} degrees is out of range", name, angle),
+                              remedy);
+}
+
+void check_polar_angles(const std::vector<double>& angles, const char* name, bool of_sheet) {
+    if (of_sheet)
+        return check_angles(angles, name,
+                            "angles from the normal lie between 0 and 180 degrees, and 90 is along "
+                            "the sheet",
+                            [](double a) { return a >= 0.0 && a <= 180.0 && a != 90.0; });
+    for (const double angle : angles)
+        if (angle > 90.0 && angle <= 180.0)
+            throw_input_error({},
+                              fmt::format("{} of {} degrees lies beneath the material, which is "
+                                          "opaque",
+                                          name, angle),
+                              "angles from the normal lie between 0 and below 90 degrees; a sheet "
+                              "(substrate type \"none\") has two sides");
+    check_angles(angles, name, "angles from the normal lie between 0 and below 90 degrees",
+                 [](double a) { return a >= 0.0 && a < 90.0; });
+}
+
+void check_request(const MeasureRequest& request, bool of_sheet) {
+    check_polar_angles(request.theta_i_deg, "theta-i", of_sheet);
+    if (request.hemispherical)
+        return;
+    check_polar_angles(request.theta_o_deg, "theta-o", of_sheet);
+    check_angles(request.phi_deg, "phi", "azimuths lie between -360 and 360 degrees",
+                 [](double a) { return a >= -360.0 && a <= 360.0; });
 }
 
 double radians(double degrees) {
     return degrees * std::numbers::pi / 180.0;
 }
 
-/// Appends the rows of one run and knows which wavelength pairs are possible.
-class RowWriter {
-public:
-    RowWriter(Measurement& measurement, const LayeredBsdf& surface)
-        : measurement_(measurement), surface_(surface), bands_(measurement.bands.count),
-          fluorescent_(!Eigen::MatrixXd(surface.coupling()).isDiagonal(0.0)) {}
+/// Light that slabs spread keeps its band where they hold no dyes.
+PartValues values_of(const LayeredBsdf& surface, const LayeredBsdf::Parts& parts) {
+    if (surface.emitting())
+        return {parts.diffuse, parts.slab, parts.specular};
+    return {parts.diffuse, parts.slab.diagonal(), parts.specular};
+}
 
-    void directional(double theta_i, double theta_o, double phi) {
-        const kernels::Vec3 wi = direction_at(std::cos(radians(theta_i)), 0.0);
-        const kernels::Vec3 wo = direction_at(std::cos(radians(theta_o)), radians(phi));
-        MeasureRow row{theta_i, theta_o, phi, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
-        diffuse(row, surface_.diffuse(wi, wo));
-        specular(row, [&](int band) { return surface_.at(band).specular(wi, wo); });
-    }
+AirDirection from(double theta_deg) {
+    return {std::fabs(std::cos(radians(theta_deg))), theta_deg < 90.0 ? Side::Above : Side::Below};
+}
 
-    void hemispherical(double theta_i) {
-        const double c = std::cos(radians(theta_i));
-        MeasureRow row{theta_i, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
-        diffuse(row, surface_.diffuse_albedo(c));
-        specular(row, [&](int band) { return surface_.at(band).specular_albedo(c); });
-    }
+void add_directional(PartRows& rows, const LayeredBsdf& surface, const MeasureRow& angles) {
+    const kernels::Vec3 wi = direction_at(std::cos(radians(angles.theta_i_deg)), 0.0);
+    const kernels::Vec3 wo =
+        direction_at(std::cos(radians(angles.theta_o_deg)), radians(angles.phi_deg));
+    rows.add_reflected(angles, values_of(surface, surface.parts(wi, wo)));
+}
 
-private:
-    void add(MeasureRow row, int i, int o, double value, MeasuredPart part) {
-        row.lambda_i_nm = measurement_.bands.centre_nm(i);
-        row.lambda_o_nm = measurement_.bands.centre_nm(o);
-        row.value = value;
-        row.part = part;
-        measurement_.rows.push_back(row);
-    }
+void add_hemispherical(PartRows& rows, const LayeredBsdf& surface, double theta_i) {
+    const MeasureRow angles = rows_at(theta_i);
+    const AirDirection wi = from(theta_i);
+    rows.add_reflected(angles, values_of(surface, surface.albedo(wi, wi.side)));
+    if (!surface.is_sheet())
+        return;
+    const Side far = wi.side == Side::Above ? Side::Below : Side::Above;
+    rows.add_transmitted(angles, values_of(surface, surface.albedo(wi, far)));
+    rows.add_guided(angles, surface.guided(wi));
+}
 
-    /// Every (excitation, emission) that can hold something: the diagonal, Stokes shifts, and
-    /// others where they are not zero.
-    void diffuse(const MeasureRow& row, const Eigen::MatrixXd& values) {
-        const Eigen::MatrixXd& coupling = surface_.coupling();
-        for (int i = 0; i < bands_; ++i) {
-            for (int o = 0; o < bands_; ++o)
-                if (o == i || (fluorescent_ && (o > i || coupling(o, i) != 0.0)))
-                    add(row, i, o, values(o, i), MeasuredPart::Diffuse);
-        }
-    }
-    template <typename Value>
-    void specular(const MeasureRow& row, const Value& value) {
-        for (int band = 0; band < bands_; ++band)
-            add(row, band, band, value(band), MeasuredPart::Specular);
-    }
+/// The largest shares of the incident light that are not where one may look for them.
+struct Remarks {
+    double delta = 0.0, straight_on = 0.0, lost = 0.0;
 
-    Measurement& measurement_;
-    const LayeredBsdf& surface_;
-    int bands_;
-    bool fluorescent_;
+    void add(const LayeredBsdf& surface, double theta_deg) {
+        const AirDirection wi = from(theta_deg);
+        delta = std::max(delta, surface.delta(wi.cosine, wi.side).maxCoeff());
+        if (surface.is_sheet())
+            straight_on = std::max(straight_on, surface.straight_on(wi.cosine).maxCoeff());
+        for (int band = 0; band < surface.bands(); ++band)
+            lost = std::max(lost, surface.at(band).lost(wi.cosine));
+    }
 };
+
+std::string note_of_deltas(const Remarks& remarks, bool hemispherical) {
+    if (hemispherical)
+        return "the rows include the mirror reflection of smooth surfaces";
+    if (!(remarks.straight_on > 0.0))
+        return fmt::format("the mirror reflection of smooth surfaces (weight up to {:.9g}) is a "
+                           "delta and left out of these directional rows",
+                           remarks.delta);
+    return fmt::format("the mirror reflection of smooth surfaces (weight up to {:.9g}) and what "
+                       "passes them straight on ({:.9g}) are deltas and left out of these "
+                       "directional rows",
+                       remarks.delta, remarks.straight_on);
+}
 
 void add_notes(Measurement& measurement, const LayeredBsdf& surface,
                const MeasureRequest& request) {
-    double delta = 0.0, lost = 0.0;
-    for (const double theta : request.theta_i_deg) {
-        for (int band = 0; band < measurement.bands.count; ++band) {
-            const double c = std::cos(radians(theta));
-            delta = std::max(delta, surface.at(band).delta(c));
-            lost = std::max(lost, surface.at(band).lost(c));
-        }
-    }
-    if (delta > 0.0) {
-        measurement.notes.push_back(
-            request.hemispherical
-                ? "the rows include the mirror reflection of smooth surfaces"
-                : fmt::format("the mirror reflection of smooth surfaces (weight up to {:.9g}) is "
-                              "a delta and left out of these directional rows",
-                              delta));
-    }
-    if (lost > 0.0) {
+    Remarks remarks;
+    for (const double theta : request.theta_i_deg)
+        remarks.add(surface, theta);
+    if (remarks.delta > 0.0 || remarks.straight_on > 0.0)
+        measurement.notes.push_back(note_of_deltas(remarks, request.hemispherical));
+    if (remarks.lost > 0.0)
         measurement.notes.push_back(fmt::format(
             "scattering = \"single\" loses up to {:.6g} of the incident flux between facets",
-            lost));
-    }
+            remarks.lost));
 }
 
 } // namespace
@@ -145,24 +157,25 @@ WavelengthGrid measured_bands(const Material& material, const MeasureRequest& re
 
 Measurement measure_substrate(const LayerStack& stack, const SubstrateValues& substrate,
                               const WavelengthGrid& bands, const MeasureRequest& request) {
-    check_request(request);
+    check_request(request, stack.is_sheet());
     if (request.model == Model::Walk)
         return measure_by_walk(stack, substrate, bands, request);
     Measurement measurement;
     measurement.bands = bands;
     measurement.hemispherical = request.hemispherical;
+    measurement.of_sheet = stack.is_sheet();
     measurement.model = request.model == Model::Auto ? Model::Adding : request.model;
     const LayeredBsdf surface(stack, substrate, bands, closed_model(measurement.model));
-    RowWriter writer(measurement, surface);
+    PartRows rows(measurement, stack, possible_pairs({surface.coupling()}, bands.count, false));
     for (const double theta_i : request.theta_i_deg) {
         throw_if_stopped(request.stop);
         if (request.hemispherical) {
-            writer.hemispherical(theta_i);
+            add_hemispherical(rows, surface, theta_i);
             continue;
         }
         for (const double theta_o : request.theta_o_deg)
             for (const double phi : request.phi_deg)
-                writer.directional(theta_i, theta_o, phi);
+                add_directional(rows, surface, rows_at(theta_i, theta_o, phi));
     }
     add_notes(measurement, surface, request);
     return measurement;
@@ -175,6 +188,10 @@ Measurement measure_stack(const LayerStack& stack, const Eigen::MatrixXd& per_ba
 
 SubstrateValues measured_substrate(const Substrate& substrate, const WavelengthGrid& bands) {
     SubstrateValues measured;
+    if (substrate.type == SubstrateType::None) {
+        measured.matrix = Eigen::MatrixXd::Zero(bands.count, bands.count);
+        return measured;
+    }
     if (substrate.type == SubstrateType::Conductor) {
         for (const double nm : bands.centres_nm())
             measured.conductor.push_back(conductor_at(substrate.conductor, nm));
@@ -191,9 +208,9 @@ Measurement measure_material(const Material& material, const MeasureRequest& req
     MeasureRequest resolved = request;
     const ModelChoice choice = choose_model(material, request.model, ModelUse::Measure);
     resolved.model = choice.model;
-    check_request(resolved);
+    check_request(resolved, material.stack.is_sheet());
     const WavelengthGrid bands = measured_bands(material, request);
-    check_measure_memory(bands, material.is_fluorescent(), request);
+    check_measure_memory(material, bands, request);
     Measurement measurement = measure_substrate(
         material.stack, measured_substrate(material.substrate, bands), bands, resolved);
     if (!choice.reason.empty())

@@ -100,7 +100,7 @@ void MeasuredSample::require_no_fluorescence(const MeasuredDirections& at) const
 
 void MeasuredSample::require_no_specular_light(const MeasuredDirections& at) const {
     for (const Row& row : rows_.at(at))
-        if (row.part == Part::Specular && row.value != 0.0)
+        if (row.part == MeasuredPart::Specular && row.value != 0.0)
             throw_input_error(
                 {file_, row.line, 1},
                 "the file does not tell how much of the specular light goes into an "
@@ -133,7 +133,7 @@ void MeasuredSample::require_every_entry(const MeasuredDirections& at) const {
 
 void MeasuredSample::add_to(ReradiationMatrix& matrix, const MeasuredDirections& at,
                             double factor) const {
-    std::set<std::tuple<Part, int, int>> seen;
+    std::set<std::tuple<MeasuredPart, int, int>> seen;
     for (const Row& row : rows_.at(at)) {
         const SourcePosition place{file_, row.line, 1};
         if (!seen.emplace(row.part, row.emission, row.excitation).second)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/measure/geometry_matrix.h"
+#include "reradiant/measure.h"
 #include "reradiant/reradiation.h"
 #include "reradiant/wavelength_grid.h"
 
@@ -38,18 +39,17 @@ public:
     ReradiationMatrix seen_in(const ViewingGeometry& geometry) const;
 
 private:
-    enum class Part { Diffuse, Slab, Specular, Transmitted, TransmittedSpecular, Guided };
     struct Row {
         double excitation_nm, emission_nm;
         int excitation, emission; ///< bands
         bool is_diagonal;         ///< both are one wavelength
         double value;             ///< as in the file; NaN: not measured
-        Part part;
+        MeasuredPart part;
         int line;
     };
     class Reader;
 
-    static bool is_reflected(const Row& row) { return row.part <= Part::Specular; }
+    static bool is_reflected(const Row& row) { return reradiant::is_reflected(row.part); }
     std::vector<MeasuredDirections> answering(const ViewingGeometry& geometry) const;
     [[noreturn]] void refuse(const ViewingGeometry& geometry) const;
     void require_every_entry(const MeasuredDirections& at) const;

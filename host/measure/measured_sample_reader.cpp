@@ -6,7 +6,6 @@
 
 #include <fmt/core.h>
 
-#include <array>
 #include <limits>
 
 namespace reradiant {
@@ -33,10 +32,10 @@ double angle(const TextReader& reader, const TextToken& token, double low, doubl
     return degrees;
 }
 
-/// Theta_o lies on the far side of a sheet above 90.
+/// Angles above 90 lie beneath a sheet.
 MeasuredDirections directions(const TextReader& reader, const std::vector<TextToken>& cells) {
     MeasuredDirections at;
-    at.theta_i_deg = angle(reader, cells[0], 0.0, 90.0);
+    at.theta_i_deg = angle(reader, cells[0], 0.0, 180.0 + 1e-9);
     at.hemispherical = cells[1].text.empty() && cells[2].text.empty();
     if (at.hemispherical)
         return at;
@@ -47,12 +46,12 @@ MeasuredDirections directions(const TextReader& reader, const std::vector<TextTo
 
 } // namespace
 
-MeasuredSample::Part MeasuredSample::Reader::part(const TextToken& token) const {
-    constexpr std::array names = {
-        "diffuse", "slab", "specular", "transmitted", "transmitted-specular", "guided"};
-    for (std::size_t k = 0; k < names.size(); ++k)
-        if (token.text == names[k])
-            return static_cast<Part>(k);
+MeasuredPart MeasuredSample::Reader::part(const TextToken& token) const {
+    for (int k = 0; k < measured_parts; ++k) {
+        const auto part = static_cast<MeasuredPart>(k);
+        if (token.text == part_name(part))
+            return part;
+    }
     throw_input_error(reader_.position(token), fmt::format("'{}' is not a part", token.text),
                       "write diffuse, slab or specular");
 }

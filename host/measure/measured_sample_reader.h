@@ -21,7 +21,7 @@ public:
 private:
     using Axis = std::map<double, PlacedWavelength>; ///< wavelengths with their first places
 
-    Part part(const TextToken& token) const;
+    MeasuredPart part(const TextToken& token) const;
     double wavelength(const TextToken& token, Axis& axis) const;
     void read_row(std::vector<TextToken> cells);
     void read_remark(std::string_view line);

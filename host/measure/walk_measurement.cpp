@@ -1,7 +1,9 @@
 #include "host/measure/walk_measurement.h"
 
 #include "host/layers/stack/directions.h"
+#include "host/layers/stack/slab_emission.h"
 #include "host/layers/walk/walk_estimate.h"
+#include "host/measure/row_writer.h"
 #include "host/measure/walk_continuation.h"
 
 #include <fmt/core.h>
@@ -32,48 +34,17 @@ std::vector<Detector> detectors_of(const MeasureRequest& request) {
     return detectors;
 }
 
-using Pairs = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
-
-/// The pairs (emission, excitation) that light can leave and come at: the diagonal, Stokes shifts,
-/// and where the matrix has entries above the diagonal, what these reach in any number of steps,
-/// between which layers above send the light back. Only the diagonal where nothing fluoresces.
-Pairs possible_pairs(const Eigen::MatrixXd& matrix, int bands, bool has_layers) {
-    Pairs possible = Pairs::Identity(bands, bands);
-    if (matrix.size() == 0 || matrix.isDiagonal(0.0))
-        return possible;
-    possible = (matrix.array() != 0.0).matrix();
-    for (int via = 0; has_layers && via < bands; ++via) // Warshall's transitive closure
-        for (int i = 0; i < bands; ++i)
-            if (possible(via, i))
-                possible.col(i) = possible.col(i).array() || possible.col(via).array();
-    for (int i = 0; i < bands; ++i)
-        possible.col(i).tail(bands - i).setConstant(true);
-    return possible;
+PartValues values_of(const WalkTally::Parts& parts) {
+    return {parts.diffuse, parts.slab, parts.specular};
 }
 
-/// Appends the rows of one pair of directions.
-void add_rows(Measurement& measurement, const Pairs& possible, const MeasureRow& angles,
-              const WalkTally::Parts& mean, const WalkTally::Parts& error) {
-    const auto row = [&](int i, int o, double value, double standard_error, MeasuredPart part) {
-        MeasureRow& added = measurement.rows.emplace_back(angles);
-        added.lambda_i_nm = measurement.bands.centre_nm(i);
-        added.lambda_o_nm = measurement.bands.centre_nm(o);
-        added.value = value;
-        added.standard_error = standard_error;
-        added.part = part;
-    };
-    const int bands = measurement.bands.count;
-    const bool is_full = mean.diffuse.cols() == bands;
-    for (int i = 0; i < bands; ++i) {
-        for (int o = 0; o < bands; ++o) {
-            if (possible(o, i)) {
-                const int column = is_full ? i : 0;
-                row(i, o, mean.diffuse(o, column), error.diffuse(o, column), MeasuredPart::Diffuse);
-            }
-        }
-    }
-    for (int band = 0; band < bands; ++band)
-        row(band, band, mean.specular(band), error.specular(band), MeasuredPart::Specular);
+void add_hemispherical(PartRows& rows, double theta_i, const WalkEstimate& found, bool of_sheet) {
+    const MeasureRow angles = rows_at(theta_i);
+    const WalkTally &mean = found.mean, &error = found.standard_error;
+    rows.add_reflected(angles, values_of(mean.hemispherical), values_of(error.hemispherical));
+    if (of_sheet)
+        rows.add_transmitted(angles, values_of(mean.transmitted), values_of(error.transmitted));
+    rows.add_guided(angles, mean.guided, error.guided);
 }
 
 /// A `WalkJournal` keeps the state of the walk of every theta_i, in order, and tells it to a
@@ -107,24 +78,48 @@ private:
     std::vector<WalkState> told_;
 };
 
+/// The largest shares of the incident light that are not where one may look for them.
+struct Remarks {
+    double delta = 0.0, delta_transmitted = 0.0, lost = 0.0, guided = 0.0;
+
+    void add(const WalkTally& mean) {
+        delta = std::max(delta, mean.delta.maxCoeff());
+        delta_transmitted = std::max(delta_transmitted, mean.delta_transmitted.maxCoeff());
+        lost = std::max(lost, mean.lost.maxCoeff());
+        guided = std::max(guided, mean.guided.colwise().sum().maxCoeff());
+    }
+};
+
+std::string note_of_deltas(const Remarks& remarks) {
+    if (!(remarks.delta_transmitted > 0.0))
+        return fmt::format("the mirror reflection of smooth surfaces (weight up to about {:.3g}) "
+                           "is a delta and left out of these directional rows",
+                           remarks.delta);
+    return fmt::format("the mirror reflection of smooth surfaces (weight up to about {:.3g}) and "
+                       "what passes them straight on ({:.3g}) are deltas and left out of these "
+                       "directional rows",
+                       remarks.delta, remarks.delta_transmitted);
+}
+
 void add_notes(Measurement& measurement, const LayerWalk& walk, long samples, unsigned seed,
-               double delta, double lost) {
+               const Remarks& remarks) {
     const auto add = [&](const std::string& note) { measurement.notes.push_back(note); };
     add(fmt::format("random walk, {} paths for each theta_i, seed {}, {}", samples, seed,
                     walk.serves_all_bands() ? "the same for all bands"
                                             : "for each excitation band"));
-    if (delta > 0.0 && measurement.hemispherical) {
+    const bool has_deltas = remarks.delta > 0.0 || remarks.delta_transmitted > 0.0;
+    if (has_deltas && measurement.hemispherical)
         add("hemispherical rows include the mirror reflection of smooth surfaces");
-    } else if (delta > 0.0) {
-        add(fmt::format("the mirror reflection of smooth surfaces (weight up to about {:.3g}) is a "
-                        "delta and left out of these directional rows",
-                        delta));
-    }
-    if (lost > 0.0) {
+    else if (has_deltas)
+        add(note_of_deltas(remarks));
+    if (remarks.lost > 0.0)
         add(fmt::format("scattering = \"single\" loses up to about {:.3g} of the incident flux "
                         "between facets on its way to the substrate",
-                        lost));
-    }
+                        remarks.lost));
+    if (remarks.guided > 0.0)
+        add(fmt::format("smooth clear faces guide up to about {:.3g} of the incident flux, which "
+                        "never leaves",
+                        remarks.guided));
 }
 
 } // namespace
@@ -135,32 +130,33 @@ Measurement measure_by_walk(const LayerStack& stack, const SubstrateValues& subs
     measurement.bands = bands;
     measurement.model = Model::Walk;
     measurement.hemispherical = request.hemispherical;
-    const LayerWalk walk(stack, substrate, bands.centres_nm());
+    measurement.of_sheet = stack.is_sheet();
+    std::vector<Eigen::MatrixXd> couplings = slab_emissions(stack, bands);
+    const LayerWalk walk(stack, substrate, bands.centres_nm(), couplings);
+    if (!stack.is_sheet())
+        couplings.push_back(substrate.matrix);
+    PartRows rows(measurement, stack,
+                  possible_pairs(couplings, bands.count, !stack.layers.empty()));
     const std::vector<Detector> detectors =
         request.hemispherical ? std::vector<Detector>{} : detectors_of(request);
     std::vector<kernels::Vec3> wo;
     for (const Detector& detector : detectors)
         wo.push_back(detector.w);
     const long samples = request.samples > 0 ? request.samples : default_walk_samples;
-    const Pairs possible = possible_pairs(substrate.matrix, bands.count, !stack.layers.empty());
-    double delta = 0.0, lost = 0.0;
+    Remarks remarks;
     WalkJournal journal(request);
     for (const double theta_i : request.theta_i_deg) {
-        const WalkEstimate estimate =
+        const WalkEstimate found =
             journal.estimate(walk, direction_at(std::cos(radians(theta_i)), 0.0), wo, samples);
-        const WalkTally &mean = estimate.mean, &error = estimate.standard_error;
-        MeasureRow angles{theta_i, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, MeasuredPart::Diffuse};
         if (request.hemispherical)
-            add_rows(measurement, possible, angles, mean.hemispherical, error.hemispherical);
-        for (std::size_t k = 0; k < detectors.size(); ++k) {
-            angles.theta_o_deg = detectors[k].theta_deg;
-            angles.phi_deg = detectors[k].phi_deg;
-            add_rows(measurement, possible, angles, mean.directional[k], error.directional[k]);
-        }
-        delta = std::max(delta, mean.delta.maxCoeff());
-        lost = std::max(lost, mean.lost.maxCoeff());
+            add_hemispherical(rows, theta_i, found, stack.is_sheet());
+        for (std::size_t k = 0; k < detectors.size(); ++k)
+            rows.add_reflected(rows_at(theta_i, detectors[k].theta_deg, detectors[k].phi_deg),
+                               values_of(found.mean.directional[k]),
+                               values_of(found.standard_error.directional[k]));
+        remarks.add(found.mean);
     }
-    add_notes(measurement, walk, samples, request.seed, delta, lost);
+    add_notes(measurement, walk, samples, request.seed, remarks);
     return measurement;
 }
 

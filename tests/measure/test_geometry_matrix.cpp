@@ -282,8 +282,8 @@ TEST(GeometryMatrix, WhatIsNotComputedForDyesAndSheetsIsRefused) {
     walked.stack.layers.emplace_back().flakes = Flakes{0.2, {}};
     walked.stack.lower_face.emplace();
     walked.substrate.type = SubstrateType::None;
-    for (const char* geometry : {"8/d", "d/8", "8/de"})
-        EXPECT_THROW(factors(walked, geometry), Error) << geometry;
+    EXPECT_THROW(factors(walked, "8/de"), Error);
+    EXPECT_LT(largest_error(factors(walked, "d/8"), factors(walked, "8/d")), 1e-12);
 }
 
 TEST(GeometryMatrix, BandsAreThoseOfTheSharesWhereTheSubstrateHasNone) {

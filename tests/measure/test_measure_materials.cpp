@@ -54,12 +54,16 @@ MeasureRequest hemispherical(Model model, std::vector<double> thetas) {
     return request;
 }
 
+/// Light of the substrate and all other.
 struct Parts {
     double diffuse = 0.0, specular = 0.0;
 };
 Parts whole(const LayerStack& stack, const SubstrateValues& substrate, Model model, double theta) {
-    const auto rows = measure_substrate(stack, substrate, one, hemispherical(model, {theta})).rows;
-    return {rows.at(0).value, rows.at(1).value};
+    Parts sum;
+    for (const MeasureRow& row :
+         measure_substrate(stack, substrate, one, hemispherical(model, {theta})).rows)
+        (row.part == MeasuredPart::Diffuse ? sum.diffuse : sum.specular) += row.value;
+    return sum;
 }
 
 /// Directional rows summed over the hemisphere: midpoint rule of 90 x 90 over one half.

@@ -128,7 +128,7 @@ TEST_F(MeasuredSampleTest, BadRowsAreRefusedAtTheirPlace) {
               std::string::npos);
     EXPECT_NE(with("45,0,0,400,400,1,0,shiny\n").find(":2:20: 'shiny'"), std::string::npos)
         << with("45,0,0,400,400,1,0,shiny\n");
-    EXPECT_NE(with("95,0,0,400,400,1,0,diffuse\n").find(":2:1: 95 degrees"), std::string::npos);
+    EXPECT_NE(with("185,0,0,400,400,1,0,diffuse\n").find(":2:1: 185 degrees"), std::string::npos);
     EXPECT_NE(with("45,0,0,400,400,1,0\n").find("7 values"), std::string::npos);
     EXPECT_NE(with("45,,0,400,400,1,0,diffuse\n").find(":2:"), std::string::npos);
     EXPECT_NE(with("").find("no row of a measurement"), std::string::npos);

@@ -100,7 +100,8 @@ TEST(Walk, MatchesTheDoublePrecisionWalkInAngle) {
         for (std::size_t b = 0; b < nm.size(); ++b) {
             const auto row = static_cast<Eigen::Index>(b);
             const auto sum_of = [&](const WalkTally::Parts& parts, bool squared) {
-                const double diffuse = parts.diffuse.row(row).sum(), rest = parts.specular(row);
+                const double diffuse = parts.diffuse.row(row).sum(),
+                             rest = parts.specular(row) + parts.slab(row);
                 return squared ? diffuse * diffuse + rest * rest : diffuse + rest;
             };
             const double expected = sum_of(twin.mean.directional[0], false) * wi.z;

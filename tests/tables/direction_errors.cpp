@@ -23,8 +23,9 @@ constexpr long paths = 1L << 16U;
 struct Sum {
     double value = 0.0, variance = 0.0;
 };
-/// Both parts of one pair of directions.
+/// What the substrate sends into one pair of directions, and all else.
 using Parts = std::array<Sum, 2>;
+constexpr std::size_t specular = 1;
 using Geometry = std::array<double, 3>; ///< theta_i, theta_o, phi
 using Values = std::map<Geometry, Parts>;
 
@@ -38,7 +39,7 @@ Values measured(const Material& material, Model model) {
     Values values;
     for (const MeasureRow& row : measure_material(material, request).rows) {
         Sum& sum = values[{row.theta_i_deg, row.theta_o_deg, row.phi_deg}]
-                         [static_cast<std::size_t>(row.part)];
+                         [row.part == MeasuredPart::Diffuse ? 0 : specular];
         sum.value += row.value;
         sum.variance += row.standard_error * row.standard_error;
     }
@@ -48,7 +49,6 @@ Values measured(const Material& material, Model model) {
 /// The walk's specular part is taken from the more grazing of the two directions, by reciprocity:
 /// from the other one rare paths of large weight hide from its standard error.
 const Sum& specular_of(const Values& walk, const Geometry& g) {
-    constexpr auto specular = static_cast<std::size_t>(MeasuredPart::Specular);
     return walk.at(g[0] >= g[1] ? g : Geometry{g[1], g[0], g[2]})[specular];
 }
 
@@ -58,9 +58,9 @@ void print_row(const std::string& name, const Material& material) {
     double sum = 0.0, errors = 0.0, worst = 0.0;
     Geometry where{};
     for (const auto& [geometry, parts] : walk) {
-        const Sum& specular = specular_of(walk, geometry);
-        const double truth = parts[0].value + specular.value;
-        const double error = std::sqrt(parts[0].variance + specular.variance);
+        const Sum& rest = specular_of(walk, geometry);
+        const double truth = parts[0].value + rest.value;
+        const double error = std::sqrt(parts[0].variance + rest.variance);
         const Parts& own = adding.at(geometry);
         const double difference = std::fabs(own[0].value + own[1].value - truth);
         sum += difference / truth;

@@ -147,6 +147,13 @@ std::string counted(std::size_t count, const char* one, const char* several) {
     return fmt::format("{} {}", count, count == 1 ? one : several);
 }
 
+const char* quantity_name(const Measurement& measurement) {
+    if (measurement.hemispherical)
+        return measurement.of_sheet ? "directional-hemispherical reflectance and transmittance"
+                                    : "directional-hemispherical reflectance";
+    return measurement.of_sheet ? "bispectral BSDF" : "bispectral BRDF";
+}
+
 /// What was made, and where: one line.
 std::string summary(const MeasureOptions& options, const MeasureRequest& request,
                     const Measurement& measurement) {
@@ -159,11 +166,22 @@ std::string summary(const MeasureOptions& options, const MeasureRequest& request
     const WavelengthGrid& bands = measurement.bands;
     return fmt::format(
         "{}: {} of {}, {}, {} from {:.6g} to {:.6g} nm, {}, model {}", options.output.string(),
-        measurement.hemispherical ? "directional-hemispherical reflectance" : "bispectral BRDF",
-        material_file(options).filename().string(), directions,
+        quantity_name(measurement), material_file(options).filename().string(), directions,
         counted(static_cast<std::size_t>(bands.count), "band", "bands"), bands.from_nm,
         bands.to_nm(), counted(measurement.rows.size(), "row", "rows"),
         model_name(measurement.model));
+}
+
+/// The balance of every theta_i: over the bands of excitation, what leaves or is guided over what
+/// came. Empty for directions.
+nlohmann::json balances_json(const Measurement& measurement) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const MeasuredBalance& one : measured_balances(measurement))
+        list.push_back(
+            {{"theta_i_deg", one.theta_i_deg},
+             {"energy", {{"smallest", one.smallest_energy}, {"largest", one.largest_energy}}},
+             {"photons", {{"smallest", one.smallest_photons}, {"largest", one.largest_photons}}}});
+    return list;
 }
 
 int run_measure(const MeasureOptions& options, const CommonOptions& common) {
@@ -197,6 +215,7 @@ int run_measure(const MeasureOptions& options, const CommonOptions& common) {
                               {{"from_nm", measurement.bands.from_nm},
                                {"to_nm", measurement.bands.to_nm()},
                                {"step_nm", measurement.bands.step_nm}}},
+                             {"balance", balances_json(measurement)},
                              {"notes", measurement.notes}});
     if (!common.quiet) {
         fmt::print("{}\n", summary(options, request, measurement));
@@ -217,11 +236,12 @@ void add_measure_command(Program& program, CommandContext& context) {
     source.option("--preset", options->preset, "a material of spectra/materials by name");
     command.option("-o,--output", options->output, "CSV file to write").required();
     command
-        .option("--theta-i", options->theta_i, "incident angles, degrees, as in 0,45; default: 0")
+        .option("--theta-i", options->theta_i,
+                "incident angles, degrees, as in 0,45; above 90: from beneath a sheet; default: 0")
         .delimiter(',');
     command
         .option("--theta-o", options->theta_o,
-                "outgoing angles, degrees, as in 5,20,60; default: 0")
+                "outgoing angles, degrees, as in 5,20,60; above 90: beneath a sheet; default: 0")
         .delimiter(',');
     command
         .option("--phi", options->phi,

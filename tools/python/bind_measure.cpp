@@ -56,6 +56,13 @@ Doubles column(const Measurement& measurement, Member member) {
     return values;
 }
 
+py::list part_column(const Measurement& measurement) {
+    py::list names;
+    for (const MeasureRow& row : measurement.rows)
+        names.append(part_name(row.part));
+    return names;
+}
+
 py::array_t<bool> specular_column(const Measurement& measurement) {
     py::array_t<bool> values(static_cast<py::ssize_t>(measurement.rows.size()));
     bool* out = values.mutable_data();
@@ -95,6 +102,7 @@ void bind_measure(py::module_& module) {
                                  py::arg("lambda_o_nm") = column(m, &MeasureRow::lambda_o_nm),
                                  py::arg("value") = column(m, &MeasureRow::value),
                                  py::arg("stderr") = column(m, &MeasureRow::standard_error),
+                                 py::arg("part") = part_column(m),
                                  py::arg("specular") = specular_column(m));
              })
         .def("write", [](const Measurement& m, const std::string& file) {

@@ -50,7 +50,7 @@ StackElements simplified(std::span<const StackElement> stack) {
             surface->wavelength_nm = 0.0;
         } else if (auto* slab = std::get_if<SlabValues>(&element)) {
             slab->ior = medium(slab->ior);
-            slab->tau = 0.0;
+            slab->tau = slab->tau_dyes = 0.0;
             slab->tau_scattering = rounded(slab->tau_scattering, 16.0);
         }
     }

@@ -1,6 +1,8 @@
 #include "host/layers/walk/walk.h"
 
+#include "host/layers/walk/guided_light.h"
 #include "host/layers/walk/walk_connector.h"
+#include "host/layers/walk/walk_throughput.h"
 #include "kernels/scatter/henyey_greenstein.h"
 #include "kernels/scatter/oren_nayar.h"
 
@@ -8,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 
 namespace reradiant {
 
@@ -16,134 +19,23 @@ using Kind = WalkElement::Kind;
 
 namespace {
 
-/// `WalkThroughput` holds the weights that one walk carries: those of all bands, or that of the
-/// band that the walk is in.
-class WalkThroughput {
-public:
-    WalkThroughput(const WalkMaterial& material, std::optional<int> band)
-        : material_(material), start_(band), band_(band.value_or(0)),
-          rows_(Eigen::ArrayXd::Ones(band ? 1 : material.bands())) {}
-
-    const WalkElements& elements() const {
-        return start_ ? material_.at_band(band_) : material_.shared();
-    }
-    int band() const { return band_; }
-    bool reached() const { return reached_; }
-    const Eigen::ArrayXd& rows() const { return rows_; }
-    double largest() const { return rows_.maxCoeff() * largest_full_; }
-
-    void reach() { reached_ = true; }
-    void scale(double factor) { rows_ *= factor; }
-    void absorb(const Eigen::ArrayXd& depth) { rows_ *= (-depth).exp(); }
-    void re_radiate(WalkRandom& random) {
-        if (start_) {
-            draw_band(random.next());
-        } else if (material_.is_fluorescent()) {
-            const Eigen::MatrixXd sent = full_.size() > 0
-                                             ? Eigen::MatrixXd(rows_.matrix().asDiagonal() * full_)
-                                             : Eigen::MatrixXd(rows_.matrix().asDiagonal());
-            full_.noalias() = material_.matrix() * sent;
-            rows_.setOnes();
-            largest_full_ = full_.maxCoeff();
-        } else {
-            rows_ *= material_.matrix().diagonal().array();
-        }
-    }
-
-    /// Adds `factor` times what is carried to the part of the tally that it belongs to.
-    void add_to(WalkTally::Parts& parts, const Eigen::ArrayXd& factor) const {
-        if (!reached_) {
-            add_rows(parts.specular, factor);
-        } else if (!material_.is_fluorescent()) {
-            auto diagonal = parts.diffuse.col(0);
-            add_rows(diagonal, factor);
-        } else if (start_) {
-            parts.diffuse(band_, *start_) += rows_(0) * factor(0);
-        } else {
-            parts.diffuse.noalias() += (rows_ * factor).matrix().asDiagonal() * full_;
-        }
-    }
-    void add_to(Eigen::VectorXd& sums, double factor) const {
-        add_rows(sums, Eigen::ArrayXd::Constant(rows_.size(), factor));
-    }
-
-private:
-    template <typename Vector>
-    void add_rows(Vector& sums, const Eigen::ArrayXd& factor) const {
-        if (start_)
-            sums(band_) += rows_(0) * factor(0);
-        else
-            sums.array() += rows_ * factor;
-    }
-
-    void draw_band(double u) {
-        const auto column = material_.matrix().col(band_);
-        const double total = column.sum();
-        rows_ *= total;
-        double rest = u * total;
-        for (int to = 0; to < material_.bands() && total > 0.0; ++to) {
-            if (column(to) > 0.0) {
-                band_ = to; // the last possible one where rounding leaves a rest
-                rest -= column(to);
-                if (rest < 0.0)
-                    break;
-            }
-        }
-    }
-
-    const WalkMaterial& material_;
-    std::optional<int> start_;
-    int band_;
-    Eigen::ArrayXd rows_;
-    Eigen::MatrixXd full_; ///< (emission, excitation) once something has been re-radiated
-    double largest_full_ = 1.0;
-    bool reached_ = false;
-};
-
-/// The paths that come down from the directions asked for, made when they are first needed.
-class Connectors {
-public:
-    Connectors(std::span<const Vec3> wo, std::uint64_t seed, std::uint64_t sample)
-        : wo_(wo), seed_(seed), sample_(sample) {}
-
-    std::size_t size() const { return wo_.size(); }
-    const std::vector<WalkConnector>& of(const WalkThroughput& carried) {
-        if (made_.empty() || band_ != carried.band()) {
-            made_.clear();
-            band_ = carried.band();
-            for (std::size_t k = 0; k < wo_.size(); ++k) {
-                WalkRandom random(seed_, sample_, k + 1); // the same at all bands
-                made_.push_back(
-                    connect_down(carried.elements(), wo_[k], carried.rows().size(), random));
-            }
-        }
-        return made_;
-    }
-
-private:
-    std::span<const Vec3> wo_;
-    std::uint64_t seed_, sample_;
-    int band_ = 0;
-    std::vector<WalkConnector> made_;
-};
-
 /// One walk from the air until it ends or leaves.
 class Walk {
 public:
-    Walk(WalkThroughput carried, const Vec3& wi, WalkRandom& random, Connectors* connectors,
+    Walk(WalkThroughput carried, const Vec3& wi, WalkRandom& random, WalkConnectors* connectors,
          WalkTally* tally)
         : carried_(std::move(carried)), random_(random), connectors_(connectors), tally_(tally),
-          d_(kernels::vec3(-wi.x, -wi.y, -wi.z)) {}
+          d_(kernels::vec3(-wi.x, -wi.y, -wi.z)), at_(wi.z > 0.0 ? 0 : last()) {}
 
     void run() {
-        while (going_ && at_ >= 0)
+        while (going_ && is_inside())
             advance();
     }
     /// Goes on until the light meets a diffuse substrate; false where it does not.
     bool run_to_substrate() {
-        while (going_ && at_ >= 0 && element().kind != Kind::Diffuse)
+        while (going_ && is_inside() && element().kind != Kind::Diffuse)
             advance();
-        return going_ && at_ >= 0;
+        return going_ && is_inside();
     }
     bool has_left() const { return going_; }
     bool is_delta() const { return is_delta_; }
@@ -151,18 +43,23 @@ public:
     const WalkThroughput& carried() const { return carried_; }
 
 private:
-    void advance() {
-        step();
-        if (going_ && at_ >= 0) {
-            const double factor = roulette(carried_.largest(), random_);
-            carried_.scale(factor);
-            going_ = factor > 0.0;
-        }
-    }
+    int last() const { return static_cast<int>(carried_.elements().size()) - 1; }
+    bool is_inside() const { return at_ >= 0 && at_ <= last(); }
     const WalkElement& element() const {
         return carried_.elements()[static_cast<std::size_t>(at_)];
     }
     void pass() { at_ += d_.z < 0.0 ? 1 : -1; }
+
+    void advance() {
+        step();
+        if (going_ && is_inside())
+            play_roulette();
+    }
+    void play_roulette() {
+        const double factor = roulette(carried_.largest(), random_);
+        carried_.scale(factor);
+        going_ = factor > 0.0;
+    }
 
     void step() {
         switch (element().kind) {
@@ -180,18 +77,20 @@ private:
         }
     }
 
-    /// Calls connect(direction index, visit) for every visit of this element.
-    template <typename Connect>
-    void for_visits(const Connect& connect) {
+    /// Calls connect(direction index, visit) for every visit of this element that `is_connected`
+    /// (connector, visit).
+    template <typename IsConnected, typename Connect>
+    void for_visits(const IsConnected& is_connected, const Connect& connect) {
         if (!connectors_ || connectors_->size() == 0)
             return;
         const std::vector<WalkConnector>& made = connectors_->of(carried_);
         for (std::size_t k = 0; k < made.size(); ++k) {
             for (const WalkConnector::Visit& visit : made[k].visits)
-                if (visit.element == static_cast<std::size_t>(at_))
+                if (visit.element == static_cast<std::size_t>(at_) && is_connected(made[k], visit))
                     connect(k, visit);
         }
     }
+    static bool always(const WalkConnector&, const WalkConnector::Visit&) { return true; }
     void score(std::size_t direction, const Eigen::ArrayXd& factor) {
         carried_.add_to(tally_->directional[direction], factor);
     }
@@ -214,63 +113,115 @@ private:
     }
 
     SurfaceEvent meet_rough(const WalkSurface& surface, bool from_below, const Vec3& v) {
+        // refraction against an inward path is the connector's own affair, but for the event that
+        // no other event precedes
+        const auto is_connected = [from_below, is_first = is_delta_](const auto& connector,
+                                                                     const auto& visit) {
+            return is_first || from_below == (visit.d.z > 0.0) || !connector.goes_inwards(visit);
+        };
         is_delta_ = false;
         std::vector<SurfaceTarget> targets;
-        for_visits([&](std::size_t, const WalkConnector::Visit& visit) {
-            if (can_connect(from_below, visit))
-                targets.push_back({from_below == (visit.d.z > 0.0), arriving(visit.d)});
+        for_visits(is_connected, [&](std::size_t, const WalkConnector::Visit& visit) {
+            targets.push_back({from_below == (visit.d.z > 0.0), arriving(visit.d)});
         });
         const SurfaceEvent event = meet_rough_surface(surface, from_below, v, targets, random_);
         auto target = targets.begin();
-        for_visits([&](std::size_t k, const WalkConnector::Visit& visit) {
-            if (can_connect(from_below, visit)) {
-                const double n = surface.own_ior(visit.d.z > 0.0);
-                score(k, visit.weight * ((target++)->value / (n * n)));
-            }
+        for_visits(is_connected, [&](std::size_t k, const WalkConnector::Visit& visit) {
+            const double n = surface.own_ior(visit.d.z > 0.0);
+            score(k, visit.weight * ((target++)->value / (n * n)));
         });
         return event;
     }
-    /// Refraction upwards is the connector's own affair.
-    static bool can_connect(bool from_below, const WalkConnector::Visit& visit) {
-        return !from_below || visit.d.z > 0.0;
-    }
 
     void cross_slab() {
-        const WalkElement& slab = element();
-        double z = d_.z < 0.0 ? 0.0 : 1.0; // share of the slab that lies above
-        while (true) {
-            const double c = std::max(std::fabs(d_.z), 1e-300);
-            const double left = d_.z < 0.0 ? 1.0 - z : z;
-            const double free_depth =
-                slab.tau_scattering > 0.0 ? -std::log1p(-random_.next()) : HUGE_VAL;
-            if (!(free_depth * c < slab.tau_scattering * left)) {
-                carried_.absorb(slab.tau * (left / c));
-                return pass();
-            }
-            const double path = free_depth / slab.tau_scattering;
-            z = std::clamp(z + path * (d_.z < 0.0 ? c : -c), 0.0, 1.0);
-            carried_.absorb(slab.tau * path);
-            scatter_in_slab(slab, z);
-            const double factor = roulette(carried_.largest(), random_);
-            carried_.scale(factor);
-            going_ = factor > 0.0;
+        SlabEvent event{.z = d_.z < 0.0 ? 0.0 : 1.0};
+        while (go_to_event(event) || (carried_.material().is_dyed() && follow_guided(event))) {
+            meet_in_slab(event);
+            if (going_)
+                play_roulette();
             if (!going_)
                 return;
         }
+        if (going_)
+            pass();
     }
 
-    void scatter_in_slab(const WalkElement& slab, double z) {
+    /// A place in a slab, and the depth of the dyes' events on the way there.
+    struct SlabEvent {
+        double z; ///< share of the slab that lies above
+        double tau_emission = 0.0;
+    };
+
+    /// Goes through the slab to an event there, or to its end: false.
+    bool go_to_event(SlabEvent& event) {
+        const WalkElement& slab = element();
+        const double c = std::max(std::fabs(d_.z), 1e-300);
+        const double left = d_.z < 0.0 ? 1.0 - event.z : event.z;
+        event.tau_emission = slab.is_dyed() ? slab.tau_emission_on(left / c) : 0.0;
+        const double rate = slab.tau_scattering + event.tau_emission;
+        const double free_depth = rate > 0.0 ? -std::log1p(-random_.next()) : HUGE_VAL;
+        if (!(free_depth * c < rate * left)) {
+            carried_.absorb((slab.tau - event.tau_emission) * (left / c));
+            return false;
+        }
+        const double path = free_depth / rate;
+        event.z = std::clamp(event.z + path * (d_.z < 0.0 ? c : -c), 0.0, 1.0);
+        carried_.absorb((slab.tau - event.tau_emission) * path);
+        return true;
+    }
+
+    /// Goes on to the next event of light that is guided, which may lie in another slab; false
+    /// where it is not guided, or ends because there is no such event or that takes all of it away.
+    bool follow_guided(SlabEvent& event) {
+        const auto light =
+            GuidedLight::find(carried_.elements(), static_cast<std::size_t>(at_), d_);
+        if (!light)
+            return false;
+        const std::optional<GuidedLight::Event> next = light->next_event(random_);
+        if (!next) {
+            if (tally_)
+                carried_.add_to(tally_->guided);
+            going_ = false;
+            return false;
+        }
+        at_ = static_cast<int>(next->element);
+        d_ = next->d;
+        const WalkElement& slab = element();
+        event = {next->z, slab.tau_emission};
+        carried_.scale((slab.tau_scattering + slab.tau_emission) /
+                       (slab.tau_scattering + slab.tau(0)));
+        going_ = carried_.largest() > 0.0;
+        return going_;
+    }
+
+    /// Lets the slab scatter the light or its dyes re-emit it.
+    void meet_in_slab(const SlabEvent& event) {
+        const WalkElement& slab = element();
+        carried_.spread();
         is_delta_ = false;
-        for_visits([&](std::size_t k, const WalkConnector::Visit& visit) {
+        const double rate = slab.tau_scattering + event.tau_emission;
+        if (event.tau_emission > 0.0 && random_.next() * rate >= slab.tau_scattering) {
+            carried_.re_emit(slab, event.tau_emission, random_);
+            going_ = carried_.largest() > 0.0;
+            if (going_)
+                send_from_slab(0.0, event.z);
+        } else {
+            send_from_slab(slab.anisotropy, event.z);
+        }
+    }
+
+    void send_from_slab(double anisotropy, double z) {
+        const WalkElement& slab = element(); // in the band that the light has now
+        for_visits(always, [&](std::size_t k, const WalkConnector::Visit& visit) {
             const double c = std::max(std::fabs(visit.d.z), 1e-300);
             const double depth = visit.d.z < 0.0 ? z : 1.0 - z;
             const double phase =
-                kernels::henyey_greenstein_phase(slab.anisotropy, -kernels::vec3_dot(d_, visit.d));
+                kernels::henyey_greenstein_phase(anisotropy, -kernels::vec3_dot(d_, visit.d));
             score(k, visit.weight * (-(slab.tau + slab.tau_scattering) * (depth / c)).exp() *
                          (phase / (c * slab.ior * slab.ior)));
         });
         const double u1 = random_.next(), u2 = random_.next();
-        d_ = kernels::henyey_greenstein_sample(d_, slab.anisotropy, u1, u2);
+        d_ = kernels::henyey_greenstein_sample(d_, anisotropy, u1, u2);
     }
 
     void meet_diffuse() {
@@ -279,7 +230,7 @@ private:
         const Vec3 v = arriving(d_);
         carried_.re_radiate(random_);
         const WalkElement& substrate = element();
-        for_visits([&](std::size_t k, const WalkConnector::Visit& visit) {
+        for_visits(always, [&](std::size_t k, const WalkConnector::Visit& visit) {
             const double value = kernels::oren_nayar_value(substrate.sigma, v, arriving(visit.d));
             score(k, visit.weight * (value / (substrate.ior * substrate.ior)));
         });
@@ -293,64 +244,79 @@ private:
 
     WalkThroughput carried_;
     WalkRandom& random_;
-    Connectors* connectors_;
+    WalkConnectors* connectors_;
     WalkTally* tally_;
     Vec3 d_;
-    int at_ = 0;
+    int at_;
     bool going_ = true;
     bool is_delta_ = true;
 };
 
 WalkTally::Parts empty_parts(const WalkMaterial& material) {
     const Eigen::Index n = material.bands();
-    return {Eigen::MatrixXd::Zero(n, material.is_fluorescent() ? n : 1), Eigen::VectorXd::Zero(n)};
+    return {Eigen::MatrixXd::Zero(n, material.is_fluorescent() ? n : 1),
+            Eigen::MatrixXd::Zero(n, material.is_dyed() ? n : 1), Eigen::VectorXd::Zero(n)};
 }
 
-void check_direction(const Vec3& w) {
-    // a direction that comes along the surface brings no light
-    if (!(w.z > 0.0))
-        throw std::invalid_argument("a walk needs directions above the surface");
+/// Adds what a walk ends with in the air.
+void add_departure(const Walk& walk, bool comes_from_above, WalkTally& tally) {
+    const WalkThroughput& carried = walk.carried();
+    const bool is_back = (walk.direction().z > 0.0) == comes_from_above;
+    carried.add_to(is_back ? tally.hemispherical : tally.transmitted,
+                   Eigen::ArrayXd::Ones(carried.rows().size()));
+    if (walk.is_delta())
+        carried.add_to(is_back ? tally.delta : tally.delta_transmitted, 1.0);
 }
 
 } // namespace
 
 void WalkTally::set_zero() {
-    const auto clear = [](Parts& parts) {
-        parts.diffuse.setZero();
-        parts.specular.setZero();
-    };
-    clear(hemispherical);
-    for (Parts& parts : directional)
-        clear(parts);
-    delta.setZero();
-    lost.setZero();
+    for_arrays(*this, [](auto& array) { array.setZero(); });
 }
 
-LayerWalk::LayerWalk(const LayerStack& stack, const SubstrateValues& substrate,
-                     const std::vector<double>& wavelengths_nm)
-    : material_(stack, substrate, wavelengths_nm) {}
+Eigen::MatrixXd all_light(const WalkTally::Parts& parts) {
+    Eigen::MatrixXd sum = parts.specular.asDiagonal();
+    for (const Eigen::MatrixXd* part : {&parts.diffuse, &parts.slab}) {
+        if (part->cols() == sum.cols())
+            sum += *part;
+        else
+            sum.diagonal() += part->col(0);
+    }
+    return sum;
+}
 
 WalkTally LayerWalk::tally(std::size_t directions) const {
-    return {empty_parts(material_),
-            std::vector<WalkTally::Parts>(directions, empty_parts(material_)),
-            Eigen::VectorXd::Zero(bands()), Eigen::VectorXd::Zero(bands())};
+    const WalkTally::Parts parts = empty_parts(material_);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(bands());
+    return {.hemispherical = parts,
+            .transmitted = material_.is_sheet() ? parts : WalkTally::Parts{},
+            .directional = std::vector<WalkTally::Parts>(directions, parts),
+            .guided = parts.slab,
+            .delta = none,
+            .delta_transmitted = none,
+            .lost = none};
+}
+
+void LayerWalk::check_direction(const Vec3& w) const {
+    // a direction that comes along the surface brings no light
+    if (!(w.z > 0.0) && !(material_.is_sheet() && w.z < 0.0))
+        throw std::invalid_argument(material_.is_sheet()
+                                        ? "a walk needs directions to either side of the sheet"
+                                        : "a walk needs directions above the surface");
 }
 
 void LayerWalk::eval(const Vec3& wi, std::span<const Vec3> wo, std::uint64_t seed,
                      std::uint64_t sample, WalkTally& tally) const {
     check_direction(wi);
-    std::for_each(wo.begin(), wo.end(), check_direction);
-    Connectors connectors(wo, seed, sample);
+    for (const Vec3& w : wo)
+        check_direction(w);
+    WalkConnectors connectors(wo, seed, sample);
     const auto follow = [&](std::optional<int> band) {
         WalkRandom random(seed, sample, 0); // the same at all bands: their differences are smooth
         Walk walk(WalkThroughput(material_, band), wi, random, &connectors, &tally);
         walk.run();
-        if (walk.has_left()) {
-            walk.carried().add_to(tally.hemispherical,
-                                  Eigen::ArrayXd::Ones(walk.carried().rows().size()));
-            if (walk.is_delta())
-                walk.carried().add_to(tally.delta, 1.0);
-        }
+        if (walk.has_left())
+            add_departure(walk, wi.z > 0.0, tally);
     };
     if (serves_all_bands()) {
         follow(std::nullopt);

@@ -2,32 +2,13 @@
 
 #include "host/layers/walk/walk_elements.h"
 #include "host/layers/walk/walk_random.h"
+#include "host/layers/walk/walk_tally.h"
 #include "kernels/core/portable.h"
-
-#include <Eigen/Core>
 
 #include <span>
 #include <vector>
 
 namespace reradiant {
-
-/// A `WalkTally` holds the estimates, by band, that one walk or the mean over many walks gives for
-/// a material.
-struct WalkTally {
-    /// Light by whether it reached the substrate. `diffuse` did: its shape is (bands, bands), rows
-    /// = emission, for a fluorescent substrate, and (bands, 1), the diagonal, for any other.
-    /// `specular` did not.
-    struct Parts {
-        Eigen::MatrixXd diffuse;
-        Eigen::VectorXd specular;
-    };
-    Parts hemispherical;            ///< unit 1, deltas included
-    std::vector<Parts> directional; ///< 1/sr without cosine, deltas left out, one a direction asked
-    Eigen::VectorXd delta;          ///< share that smooth surfaces alone send out
-    Eigen::VectorXd lost;           ///< share that single scattering loses before the substrate
-
-    void set_zero();
-};
 
 /// A `WalkSample` is one path of light through a material, at a single wavelength at a time.
 struct WalkSample {
@@ -44,32 +25,41 @@ struct WalkArrival {
     double weight = 0.0;  ///< share of the light that it carries; 0: it left, or was absorbed
 };
 
-/// Model C: position-free random walk through a stack over a substrate (after Guo, Hasan and Zhao
-/// 2018), unbiased, in double precision, with the wavelength shift inside the walk.
+/// Model C: position-free random walk through a stack over a substrate, or through a sheet (after
+/// Guo, Hasan and Zhao 2018), unbiased, in double precision, with the wavelength shift inside the
+/// walk.
 ///
 /// Light is followed from the incident direction; every event takes its place by its probability.
-/// Towards a direction asked for, a second path (WalkConnector) comes down from there by what it
-/// may do without a value of its own: refraction downwards and anything smooth. The two are
-/// connected at every event that ends such a path: reflection at a rough surface, refraction out
-/// of it downwards, scattering in a slab, the diffuse substrate. Every path of light has one such
-/// last event, so that nothing is counted twice and no weights are needed.
+/// Towards a direction asked for, a second path (WalkConnector) comes in from there by what it may
+/// do without a value of its own: refraction inwards and anything smooth. The two are connected at
+/// every event that ends such a path: reflection at a rough surface, refraction by it the other
+/// way, the first event of light that has met smooth surfaces only, scattering and re-emission in a
+/// slab, the diffuse substrate. Every path of light has one last such event, so that nothing is
+/// counted twice and no weights are needed.
 ///
 /// One walk serves all bands and carries their weights when the stack differs between bands in its
-/// absorption only. Otherwise each excitation band has walks of its own, and the substrate draws
-/// the band of emission. Both give exactly the model's expectation, with any dispersion.
+/// absorption only and holds no dyes. Otherwise each excitation band has walks of its own, and
+/// dyes and the substrate draw the band of emission. Both give exactly the model's expectation,
+/// with any dispersion.
 class LayerWalk {
 public:
-    /// Makes one band for each wavelength. Throws an input Error for numbers out of range.
+    /// Makes one band for each wavelength. `emissions`: what the slabs' dyes send out
+    /// (slab_emissions), or nothing where none holds a dye. A sheet's substrate is not looked at.
+    /// Throws an input Error for numbers out of range, and std::invalid_argument where dyes are not
+    /// told what they send out.
     LayerWalk(const LayerStack& stack, const SubstrateValues& substrate,
-              const std::vector<double>& wavelengths_nm);
-    /// Makes a single band over a diffuse substrate. Throws as above.
+              const std::vector<double>& wavelengths_nm,
+              const std::vector<Eigen::MatrixXd>& emissions = {})
+        : LayerWalk(WalkMaterial(stack, substrate, wavelengths_nm, emissions)) {}
+    /// Makes a single band over a diffuse substrate; dyes send out nothing. Throws as above.
     explicit LayerWalk(const StackElements& stack) : LayerWalk(WalkMaterial(stack)) {}
 
     int bands() const { return material_.bands(); }
     bool serves_all_bands() const { return material_.serves_all_bands(); }
 
     /// Adds one estimate to a tally made by `tally` for as many directions. wi and wo point away
-    /// from the surface, in air. Depends on (seed, sample) and the arguments only.
+    /// from the surface, in air; those of sheets may lie on either side, z < 0 below. Depends on
+    /// (seed, sample) and the arguments only. std::invalid_argument for any other direction.
     void eval(const kernels::Vec3& wi, std::span<const kernels::Vec3> wo, std::uint64_t seed,
               std::uint64_t sample, WalkTally& tally) const;
     WalkTally tally(std::size_t directions) const;
@@ -84,12 +74,14 @@ public:
     WalkArrival arrival(const kernels::Vec3& wi, WalkRandom& random) const;
 
     /// Returns the material with light running backwards: eval(wi, wo)(lo, li) of one is eval(wo,
-    /// wi)(li, lo) of the other. Under dispersion the reversal brings in n^2 of the lowest slab at
-    /// both wavelengths.
+    /// wi)(li, lo) of the other. Under dispersion the reversal brings in n^2, at both wavelengths,
+    /// of the medium that sends the light out.
     LayerWalk reversed() const;
 
 private:
     explicit LayerWalk(WalkMaterial material) : material_(std::move(material)) {}
+
+    void check_direction(const kernels::Vec3& w) const;
 
     WalkMaterial material_;
 };

@@ -10,15 +10,17 @@ using Kind = WalkElement::Kind;
 
 namespace {
 
-/// One path down. `at` is the next element; paths that go up past the first one have left.
-class Descent {
+/// One path inwards. `at` is the next element; paths beyond the first or the last have left.
+class Inroad {
 public:
-    Descent(const WalkElements& elements, const Vec3& wo, Eigen::Index bands, WalkRandom& random)
+    Inroad(const WalkElements& elements, const Vec3& wo, Eigen::Index bands, WalkRandom& random)
         : elements_(elements), random_(random), d_(kernels::vec3(-wo.x, -wo.y, -wo.z)),
-          weight_(Eigen::ArrayXd::Ones(bands)) {}
+          weight_(Eigen::ArrayXd::Ones(bands)), entry_(wo.z > 0.0 ? 0 : last()), at_(entry_) {
+        connector_.from_above = wo.z > 0.0;
+    }
 
     WalkConnector run() {
-        while (at_ >= 0 && going_) {
+        while (going_ && at_ >= 0 && at_ <= last()) {
             step(elements_[static_cast<std::size_t>(at_)]);
             if (going_) {
                 const double factor = roulette(weight_.maxCoeff(), random_);
@@ -46,11 +48,13 @@ private:
         }
     }
 
+    int last() const { return static_cast<int>(elements_.size()) - 1; }
+    bool goes_inwards() const { return (d_.z < 0.0) == connector_.from_above; }
     void visit() { connector_.visits.push_back({static_cast<std::size_t>(at_), d_, weight_}); }
     void pass() { at_ += d_.z < 0.0 ? 1 : -1; }
 
     void pass_slab(const WalkElement& slab) {
-        if (slab.tau_scattering > 0.0)
+        if (slab.spreads())
             visit();
         weight_ *= (-(slab.tau + slab.tau_scattering) / std::max(std::fabs(d_.z), 1e-300)).exp();
         pass();
@@ -70,30 +74,30 @@ private:
 
     void meet_rough(const WalkElement& element) {
         visit();
-        const bool from_below = d_.z > 0.0;
-        going_ = !from_below && element.kind == Kind::Surface;
+        going_ = goes_inwards() && element.kind == Kind::Surface;
         if (going_) {
-            follow(meet_rough_surface(element.surface, from_below, arriving(d_), {}, random_));
-            going_ = going_ && d_.z < 0.0;
+            follow(meet_rough_surface(element.surface, d_.z > 0.0, arriving(d_), {}, random_));
+            going_ = going_ && goes_inwards();
         }
     }
 
     void meet_smooth(const WalkElement& element) {
         const bool from_below = d_.z > 0.0;
         const Vec3 v = arriving(d_);
-        if (at_ > 0 || element.surface.is_conductor) {
-            follow(meet_smooth_surface(element.surface, from_below, v, random_));
-            return;
-        }
-        if (from_below) { // what leaves here leaves for good, so only the rest is followed
-            const double back = element.surface.reflectance(true, std::min(v.z, 1.0));
+        const bool is_outer = !element.surface.is_conductor && at_ == (from_below ? 0 : last());
+        if (at_ == entry_ && goes_inwards() && !element.surface.is_conductor) {
+            const double through =
+                1.0 - element.surface.reflectance(from_below, std::min(v.z, 1.0));
+            going_ = through > 0.0;
+            if (going_)
+                follow({false, refract_at_smooth_surface(element.surface, from_below, v), through,
+                        0.0});
+        } else if (is_outer) { // what leaves here leaves for good, so only the rest is followed
+            const double back = element.surface.reflectance(from_below, std::min(v.z, 1.0));
             follow({true, kernels::vec3(-v.x, -v.y, v.z), back, 0.0});
-            return;
+        } else {
+            follow(meet_smooth_surface(element.surface, from_below, v, random_));
         }
-        const double through = 1.0 - element.surface.reflectance(false, std::min(v.z, 1.0));
-        going_ = through > 0.0;
-        if (going_)
-            follow({false, refract_at_smooth_surface(element.surface, false, v), through, 0.0});
     }
 
     void follow(const SurfaceEvent& event) {
@@ -107,16 +111,29 @@ private:
     WalkRandom& random_;
     Vec3 d_;
     Eigen::ArrayXd weight_;
-    int at_ = 0;
+    int entry_, at_;
     bool going_ = true;
     WalkConnector connector_;
 };
 
 } // namespace
 
-WalkConnector connect_down(const WalkElements& elements, const Vec3& wo, Eigen::Index bands,
-                           WalkRandom& random) {
-    return Descent(elements, wo, bands, random).run();
+WalkConnector connect_inwards(const WalkElements& elements, const Vec3& wo, Eigen::Index bands,
+                              WalkRandom& random) {
+    return Inroad(elements, wo, bands, random).run();
+}
+
+const std::vector<WalkConnector>& WalkConnectors::of(const WalkThroughput& carried) {
+    if (made_.empty() || band_ != carried.band()) {
+        made_.clear();
+        band_ = carried.band();
+        for (std::size_t k = 0; k < wo_.size(); ++k) {
+            WalkRandom random(seed_, sample_, k + 1); // the same at all bands
+            made_.push_back(
+                connect_inwards(carried.elements(), wo_[k], carried.rows().size(), random));
+        }
+    }
+    return made_;
 }
 
 double roulette(double weight, WalkRandom& random) {

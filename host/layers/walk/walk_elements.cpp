@@ -5,7 +5,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace reradiant {
 
@@ -13,10 +15,10 @@ namespace {
 
 using Kind = WalkElement::Kind;
 
-/// The matrix as light feels it, or with nothing in it for a conductor.
-Eigen::MatrixXd checked_matrix(const SubstrateValues& substrate, std::size_t bands) {
+/// The matrix as light feels it, or with nothing in it for a conductor and for a sheet.
+Eigen::MatrixXd checked_matrix(const SubstrateValues& substrate, bool is_sheet, std::size_t bands) {
     const auto n = static_cast<Eigen::Index>(bands);
-    if (!substrate.conductor.empty())
+    if (is_sheet || !substrate.conductor.empty())
         return Eigen::MatrixXd::Zero(n, n);
     if (substrate.matrix.rows() != n || substrate.matrix.cols() != n) {
         throw_input_error({},
@@ -67,28 +69,62 @@ WalkElements walk_elements(const StackElements& stack) {
 StackElements ways_of(StackElements stack) {
     for (StackElement& element : stack)
         if (auto* slab = std::get_if<SlabValues>(&element))
-            slab->tau = 0.0;
+            slab->tau = slab->tau_dyes = 0.0;
     return stack;
+}
+
+/// Puts what the dyes send out of light of a band into its slabs, which stand in the order of the
+/// layers.
+void add_emission(WalkElements& elements, const std::vector<double>& tau_dyes, int band,
+                  const std::vector<Eigen::MatrixXd>& emissions) {
+    std::size_t layer = 0;
+    for (WalkElement& element : elements) {
+        if (element.kind != Kind::Slab)
+            continue;
+        if (emissions[layer].size() > 0) {
+            element.tau_dyes = element.tau_emission = tau_dyes[layer];
+            element.emission = emissions[layer].col(band);
+        }
+        ++layer;
+    }
+}
+
+std::vector<double> depths_of_dyes(const StackElements& stack) {
+    std::vector<double> depths;
+    for (const StackElement& element : stack)
+        if (const auto* slab = std::get_if<SlabValues>(&element))
+            depths.push_back(slab->tau_dyes);
+    return depths;
 }
 
 } // namespace
 
 WalkMaterial::WalkMaterial(const LayerStack& stack, const SubstrateValues& substrate,
-                           const std::vector<double>& wavelengths_nm)
-    : matrix_(checked_matrix(substrate, wavelengths_nm.size())) {
-    fluorescent_ = !matrix_.isDiagonal(0.0);
-    std::vector<StackElements> ways;
-    bool same = true;
+                           const std::vector<double>& wavelengths_nm,
+                           const std::vector<Eigen::MatrixXd>& emissions)
+    : matrix_(checked_matrix(substrate, stack.is_sheet(), wavelengths_nm.size())),
+      is_dyed_(stack.is_dyed()), is_sheet_(stack.is_sheet()) {
+    if (is_dyed_ && emissions.size() != stack.layers.size())
+        throw std::invalid_argument("a walk through dyes needs to know what they send out");
+    fluorescent_ = !is_sheet_ && (is_dyed_ || !matrix_.isDiagonal(0.0));
+    std::vector<StackElements> values;
     for (std::size_t band = 0; band < wavelengths_nm.size(); ++band) {
-        const StackElements values =
-            stack_over(stack_at(stack, wavelengths_nm[band]), substrate.at_band(band));
-        by_band_.push_back(walk_elements(values));
-        const SurfaceValues* conductor = conductor_of(values);
-        ways.push_back(ways_of(values));
-        same = same && ways.back() == ways.front() && !(conductor && conductor->has_film());
+        const StackElements own = stack_at(stack, wavelengths_nm[band]);
+        values.push_back(is_sheet_ ? own : stack_over(own, substrate.at_band(band)));
+        by_band_.push_back(walk_elements(values.back()));
+        if (is_dyed_)
+            add_emission(by_band_.back(), depths_of_dyes(own), static_cast<int>(band), emissions);
     }
-    if (!same)
-        return;
+    if (!is_dyed_)
+        share_elements(values);
+}
+
+void WalkMaterial::share_elements(const std::vector<StackElements>& values) {
+    for (const StackElements& at_band : values) {
+        const SurfaceValues* conductor = conductor_of(at_band);
+        if (ways_of(at_band) != ways_of(values.front()) || (conductor && conductor->has_film()))
+            return;
+    }
     shared_ = by_band_[0];
     for (std::size_t e = 0; e < shared_.size(); ++e) {
         if (shared_[e].kind == WalkElement::Kind::Slab) {
@@ -107,10 +143,22 @@ WalkMaterial WalkMaterial::reversed() const {
     WalkMaterial result = *this;
     for (int to = 0; to < bands(); ++to) {
         for (int from = 0; from < bands(); ++from) {
-            const double ratio = at_band(to).back().ior / at_band(from).back().ior;
-            result.matrix_(to, from) = matrix_(from, to) * ratio * ratio;
+            const auto ratio2 = [&](std::size_t e) {
+                return kernels::square(at_band(to)[e].ior / at_band(from)[e].ior);
+            };
+            const std::size_t last = at_band(to).size() - 1;
+            result.matrix_(to, from) = matrix_(from, to) * ratio2(last);
+            for (std::size_t e = 0; e < last; ++e)
+                if (at_band(to)[e].is_dyed())
+                    result.by_band_[static_cast<std::size_t>(from)][e].emission(to) =
+                        at_band(to)[e].emission(from) * ratio2(e);
         }
     }
+    // backwards, dyes take up light of bands in which they do not absorb
+    for (WalkElements& elements : result.by_band_)
+        for (WalkElement& element : elements)
+            if (element.is_dyed())
+                element.tau_emission = std::max(element.tau_emission, element.emission.sum());
     return result;
 }
 

@@ -20,31 +20,16 @@ constexpr std::uint64_t blocks_in_group = walk_blocks / groups;
 /// waiting for the last thread costs little.
 constexpr double seconds_at_a_time = 0.25;
 
-/// Calls f(array) for every array of a tally.
-template <typename Tally, typename Function>
-void each_array(Tally& tally, const Function& f) {
-    f(tally.hemispherical.diffuse);
-    f(tally.hemispherical.specular);
-    for (auto& parts : tally.directional) {
-        f(parts.diffuse);
-        f(parts.specular);
-    }
-    f(tally.delta);
-    f(tally.lost);
-}
-
-/// Calls f(to, from) for every array of two tallies of the same shape.
+/// Calls f(to, from) for every array of two tallies of the same shape, as lists of numbers.
 template <typename Function>
-void for_arrays(WalkTally& to, const WalkTally& from, const Function& f) {
-    const auto both = [&](WalkTally::Parts& a, const WalkTally::Parts& b) {
-        f(a.diffuse, b.diffuse);
-        f(a.specular, b.specular);
-    };
-    both(to.hemispherical, from.hemispherical);
-    for (std::size_t k = 0; k < to.directional.size(); ++k)
-        both(to.directional[k], from.directional[k]);
-    f(to.delta, from.delta);
-    f(to.lost, from.lost);
+void for_pairs(WalkTally& to, const WalkTally& from, const Function& f) {
+    std::vector<Eigen::Map<const Eigen::ArrayXd>> sources;
+    for_arrays(from, [&](const auto& array) { sources.emplace_back(array.data(), array.size()); });
+    auto source = sources.begin();
+    for_arrays(to, [&](auto& array) {
+        Eigen::Map<Eigen::ArrayXd> numbers(array.data(), array.size());
+        f(numbers, *source++);
+    });
 }
 
 /// A group of successive blocks: the sums of their totals and of the squares of these, and the
@@ -53,13 +38,13 @@ struct BlockGroup {
     WalkTally sum, squares, block;
 
     void end_block() {
-        for_arrays(sum, block, [](auto& to, const auto& from) { to += from; });
-        for_arrays(squares, block, [](auto& to, const auto& from) { to += from.cwiseAbs2(); });
+        for_pairs(sum, block, [](auto& to, const auto& from) { to += from; });
+        for_pairs(squares, block, [](auto& to, const auto& from) { to += from.square(); });
         block.set_zero();
     }
     void add(const BlockGroup& other) {
-        for_arrays(sum, other.sum, [](auto& to, const auto& from) { to += from; });
-        for_arrays(squares, other.squares, [](auto& to, const auto& from) { to += from; });
+        for_pairs(sum, other.sum, [](auto& to, const auto& from) { to += from; });
+        for_pairs(squares, other.squares, [](auto& to, const auto& from) { to += from; });
     }
 };
 
@@ -93,7 +78,7 @@ public:
         WalkState state{blocks_, walks_, {}};
         for (const BlockGroup& group : groups_) {
             for (const WalkTally* tally : {&group.sum, &group.squares, &group.block}) {
-                each_array(*tally, [&](const auto& array) {
+                for_arrays(*tally, [&](const auto& array) {
                     state.numbers.insert(state.numbers.end(), array.data(),
                                          array.data() + array.size());
                 });
@@ -109,7 +94,7 @@ public:
         const double* next = state.numbers.data();
         for (BlockGroup& group : groups_) {
             for (WalkTally* tally : {&group.sum, &group.squares, &group.block}) {
-                each_array(*tally, [&](auto& array) {
+                for_arrays(*tally, [&](auto& array) {
                     std::copy_n(next, array.size(), array.data());
                     next += array.size();
                 });
@@ -168,13 +153,12 @@ WalkEstimate estimate_walk(const LayerWalk& walk, const kernels::Vec3& wi,
     const double blocks = static_cast<double>(walk_blocks);
     const double count = blocks * static_cast<double>(size);
     WalkEstimate result{sums.sum, sums.squares};
-    for_arrays(result.standard_error, sums.sum, [&](auto& squares, const auto& sum) {
+    for_pairs(result.standard_error, sums.sum, [&](auto& squares, const auto& sum) {
         // of equal blocks the difference may round below zero
-        squares = ((squares - sum.cwiseAbs2() / blocks).cwiseMax(0.0) * (blocks / (blocks - 1.0)))
-                      .cwiseSqrt() /
-                  count;
+        squares =
+            ((squares - sum.square() / blocks).max(0.0) * (blocks / (blocks - 1.0))).sqrt() / count;
     });
-    for_arrays(result.mean, sums.sum, [&](auto& mean, const auto&) { mean /= count; });
+    for_arrays(result.mean, [&](auto& mean) { mean /= count; });
     return result;
 }
 

@@ -21,7 +21,7 @@ constexpr double least_excitation = 0.01;
 
 /// Radiance of every band for unit irradiance spectrum E, in two parts, of one pair of directions.
 struct DirectionalMatrix {
-    Eigen::MatrixXd diffuse;  ///< 1/sr, rows = emission
+    Eigen::MatrixXd diffuse;  ///< 1/sr, rows = emission; of the substrate and of slabs
     Eigen::VectorXd specular; ///< 1/sr
 };
 using Directions = std::tuple<double, double, double>; ///< theta_i, theta_o, phi
@@ -39,8 +39,8 @@ std::map<Directions, DirectionalMatrix> by_directions(const Measurement& measure
         const int i = measurement.bands.band_of(row.lambda_i_nm);
         if (row.part == MeasuredPart::Specular)
             entry.specular(o) = row.value;
-        else
-            entry.diffuse(o, i) += row.value; // of the substrate and of dyes in layers
+        else if (is_reflected(row.part))
+            entry.diffuse(o, i) += row.value; // of the substrate and of slabs
     }
     return result;
 }

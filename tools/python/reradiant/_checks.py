@@ -153,6 +153,15 @@ def angles(name: str, value: Any, high: float, high_is_allowed: bool) -> np.ndar
     return given
 
 
+def polar_angles(name: str, value: Any) -> np.ndarray:
+    """Degrees from the normal, those beneath a sheet too; the material says whether it is one."""
+    given = angles(name, value, 180, True)
+    if (given == 90).any():
+        raise refuse(name, "holds 90, which is along the surface",
+                     "angles are degrees from 0 to below 90, and beneath a sheet above 90 to 180")
+    return given
+
+
 def grid(name: str, centres: Any) -> tuple:
     """(first centre, step, count) of centres in nm that ascend in equal steps, perhaps rounded."""
     nm = array(name, _as_written(centres), 1)

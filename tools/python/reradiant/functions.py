@@ -124,7 +124,7 @@ def measure(material: Any = None, *, preset: Optional[str] = None, theta_i: Any 
         Instead of a material: one of `presets()`.
     theta_i, theta_o, phi : float or array_like
         Degrees; phi is the azimuth of the outgoing from the incident direction, 180 is the mirror
-        side.
+        side. Thetas above 90 lie beneath a sheet.
     hemispherical : bool
         The directional-hemispherical matrix (unit 1) instead of the BRRDF (1/sr, without cosine).
     samples : int
@@ -133,8 +133,8 @@ def measure(material: Any = None, *, preset: Optional[str] = None, theta_i: Any 
     Returns
     -------
     Measurement
-        Its `matrix()` is of the light that reached the substrate; `matrix(specular=True)` is the
-        gloss on top of it.
+        Its `matrix()` is of the light that reached the substrate or that a slab spread;
+        `matrix(specular=True)` is the gloss on top of it.
 
     Examples
     --------
@@ -150,8 +150,8 @@ def measure(material: Any = None, *, preset: Optional[str] = None, theta_i: Any 
     if preset is not None:
         material = {"material": {"preset": _checks.choice("preset", preset, presets())}}
     options = {
-        "theta_i": _checks.angles("theta_i", theta_i, 90, False),
-        "theta_o": _checks.angles("theta_o", theta_o, 90, False),
+        "theta_i": _checks.polar_angles("theta_i", theta_i),
+        "theta_o": _checks.polar_angles("theta_o", theta_o),
         "phi": _checks.angles("phi", phi, 360, True),
         "hemispherical": _checks.flag("hemispherical", hemispherical),
         "model": _checks.choice("model", model, MODELS),

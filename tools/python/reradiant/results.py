@@ -21,9 +21,12 @@ class Measurement:
         1/sr in per-band form without the cosine, or unit 1 when hemispherical.
     stderr : float64 (rows,)
         Standard error of `value` (0 for closed forms).
+    part : str (rows,)
+        "diffuse" (reached the substrate), "slab" (never did, but was scattered or re-emitted in a
+        slab) or "specular" (neither); hemispherical rows of sheets also "transmitted",
+        "transmitted-specular" and "guided".
     specular : bool (rows,)
-        True for light that never reached the substrate, the gloss. `matrix` leaves it out unless
-        it is asked for.
+        True where `part` is "specular", the gloss. `matrix` leaves it out unless it is asked for.
     """
 
     theta_i_deg: np.ndarray
@@ -33,11 +36,13 @@ class Measurement:
     lambda_o_nm: np.ndarray
     value: np.ndarray
     stderr: np.ndarray
+    part: np.ndarray
     specular: np.ndarray
 
     def __init__(self, measurement: "_library.Measurement") -> None:
         self._measurement = measurement
         self.__dict__.update(measurement.columns())
+        self.part = np.array(self.part, dtype=np.str_)
 
     @property
     def nm(self) -> np.ndarray:
@@ -55,15 +60,17 @@ class Measurement:
         return self._measurement.notes
 
     def matrix(self, theta_i: float = 0.0, theta_o: float = 0.0, phi: float = 0.0,
-               specular: bool = False) -> np.ndarray:
+               specular: bool = False, part: Optional[str] = None) -> np.ndarray:
         """(emission, excitation) values of one pair of directions; theta_o and phi do not count for
         hemispherical ones. InputError when it was not measured.
 
-        The gloss is left out by default: these are the values of light that reached the substrate.
-        With specular=True they are those of light that never did, which the surface or a slab sent
-        back; the sum of the two is all light. (In directional measurements the mirror reflection
-        of smooth surfaces is in neither, which `notes` says.)"""
-        rows = (self.theta_i_deg == theta_i) & (self.specular == specular)
+        The gloss is left out by default: these are the values of light that reached the substrate
+        or that a slab scattered or re-emitted. With specular=True they are those of the gloss; the
+        sum of the two is all light that comes back. (In directional measurements the mirror
+        reflection of smooth surfaces is in neither, which `notes` says.) `part` asks for one part
+        alone, by its name in the attribute `part`."""
+        names = [part] if part is not None else ["specular"] if specular else ["diffuse", "slab"]
+        rows = (self.theta_i_deg == theta_i) & np.isin(self.part, names)
         if not self._measurement.hemispherical:
             rows &= (self.theta_o_deg == theta_o) & (self.phi_deg == phi)
         if not rows.any():
