@@ -88,6 +88,13 @@ FEATURE_BIT(sheets, "light goes through no material")
 #define FEATURE_SHEETS 1
 #endif
 
+/// Lights are looked for through smooth sheets.
+#ifdef FEATURE_BIT
+FEATURE_BIT(passed_sheets, "no light is looked for through a smooth sheet")
+#elif !defined(FEATURE_PASSED_SHEETS)
+#define FEATURE_PASSED_SHEETS 1
+#endif
+
 /// Some substrate is Oren-Nayar.
 #ifdef FEATURE_BIT
 FEATURE_BIT(oren_nayar, "no substrate is Oren-Nayar")

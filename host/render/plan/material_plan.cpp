@@ -93,6 +93,7 @@ private:
         plan_.counts.lobes *= 2;
         plan_.counts.floats *= 2;
         const bool is_rough = !material_.stack.is_smooth();
+        plan_.is_straight = !is_rough;
         plan_.counts.floats += row_;  // a substrate that sends nothing back, for the other side
         plan_.counts.floats += nodes; // straight on, or the amplitude of a lobe
         if (is_rough || material_.stack.scatters())
