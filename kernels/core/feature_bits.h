@@ -81,6 +81,13 @@ FEATURE_BIT(dyes, "no slab holds a dye")
 #define FEATURE_DYES 1
 #endif
 
+/// Some material is a sheet that light goes through.
+#ifdef FEATURE_BIT
+FEATURE_BIT(sheets, "light goes through no material")
+#elif !defined(FEATURE_SHEETS)
+#define FEATURE_SHEETS 1
+#endif
+
 /// Some substrate is Oren-Nayar.
 #ifdef FEATURE_BIT
 FEATURE_BIT(oren_nayar, "no substrate is Oren-Nayar")

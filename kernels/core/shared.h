@@ -199,8 +199,14 @@ typedef struct {
     shared_uint dye_coupling; ///< [phase][channel][excitation lane][channel][emission lane]
     shared_uint dye_channels;
     shared_uint dyes_shift_up; ///< 1: nothing is sent out below the wavelength that excites it
+    shared_uint other_side;    ///< of a sheet: the same as seen from below; NO_INDEX: it is opaque
+    shared_uint dyes_far;      ///< of a sheet: `dyes` for directions on the other side
+    shared_uint through_delta; ///< grey or spectral: weight of the direction straight on
+    shared_uint through_lobe;  ///< grey or spectral: amplitude of the lobe through rough faces
+    shared_uint through_own, through_far; ///< grey or spectral: product form of what else goes
+                                          ///< through, for directions on each side
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 124);
+ASSERT_SIZE(MaterialRecord, 148);
 
 /// Extinctions that distances in a scattering slab are sampled with (walk.h).
 #define WALK_REFERENCES 4

@@ -3,7 +3,7 @@
 //
 // Components: mirror delta, rough top lobe, deeper rough lobes, and a cosine lobe that serves the
 // diffuse part, the residual of the specular part (reradiant/stack_model.h) and what slabs
-// scatter.
+// scatter. Of a sheet also, on its far side: straight on, a rough lobe about that, a cosine lobe.
 #ifndef RERADIANT_LAYER_STACK_H
 #define RERADIANT_LAYER_STACK_H
 
@@ -21,11 +21,18 @@
 
 KERNELS_BEGIN
 
+#if FEATURE_SHEETS
+#define CHOICES (6 + LOBES)
+#else
 #define CHOICES (3 + LOBES)
+#endif
 #define CHOICE_DELTA 0
 #define CHOICE_TOP 1
 #define CHOICE_LOBE 2
 #define CHOICE_DIFFUSE (2 + LOBES)
+#define CHOICE_STRAIGHT (3 + LOBES)
+#define CHOICE_THROUGH_LOBE (4 + LOBES)
+#define CHOICE_THROUGH (5 + LOBES)
 
 /// Cumulative probabilities of the components at one angle, and the albedo there of the lane that
 /// reflects most, which Russian roulette uses.
@@ -92,10 +99,69 @@ DEVICE_FUNCTION real layer_stack_lobe_pdf(int distribution, real alpha, Vec3 wo,
            fmax(REAL(4.0) * vec3_dot(wo, h), REAL(1e-20));
 }
 
+#if FEATURE_SHEETS
+/// A direction on the far side as its mirror image on this one.
+DEVICE_FUNCTION Vec3 layer_stack_mirrored(Vec3 w) {
+    return vec3(w.x, w.y, fabs(w.z));
+}
+
+/// Distribution of a sheet's first rough face.
+DEVICE_FUNCTION int layer_stack_through_distribution(LayerStackView stack) {
+    for (uint l = 0u; l < stack.record.layer_count; ++l)
+        if (stack.layers[l].alpha > 0.0f)
+            return (int)stack.layers[l].distribution;
+    return MICROFACET_GGX;
+}
+
+/// Width of the lobe through a sheet's rough faces, each of which light passes once: half a passage
+/// for either direction.
+DEVICE_FUNCTION real layer_stack_through_width(LayerStackView stack, real cos_i, real cos_o) {
+    const real sin2_i = (REAL(1.0) - cos_i) * (REAL(1.0) + cos_i);
+    const real sin2_o = (REAL(1.0) - cos_o) * (REAL(1.0) + cos_o);
+    const int distribution = layer_stack_through_distribution(stack);
+    real ior = REAL(1.0), terms = REAL(0.0);
+    for (uint l = 0u; l < stack.record.layer_count; ++l) {
+        const LayerRecord face = stack.layers[l];
+        const real below = ior * face.eta;
+        if (face.alpha > 0.0f)
+            terms +=
+                REAL(0.5) *
+                (lobe_width_term(distribution, lobe_width_passage(face.alpha, ior, below, sin2_i)) +
+                 lobe_width_term(distribution, lobe_width_passage(face.alpha, ior, below, sin2_o)));
+        ior = below;
+    }
+    return lobe_width(distribution, terms, cos_i, cos_o);
+}
+
+/// Scalar value of the lobe through rough faces, to be multiplied by its two amplitudes; `wi` lies
+/// on the far side.
+DEVICE_FUNCTION real layer_stack_through_lobe(LayerStackView stack, Vec3 wi, Vec3 wo) {
+    const Vec3 mirrored = layer_stack_mirrored(wi);
+    return microfacet_reflection(layer_stack_through_distribution(stack),
+                                 layer_stack_through_width(stack, mirrored.z, wo.z), mirrored, wo);
+}
+
+/// Pdf of a direction on the far side.
+DEVICE_FUNCTION real layer_stack_through_pdf(LayerStackView stack, const LayerChoice* choice,
+                                             Vec3 wo, Vec3 wi) {
+    const Vec3 mirrored = layer_stack_mirrored(wi);
+    real pdf = layer_stack_probability(choice, CHOICE_THROUGH) * mirrored.z * INV_PI_REAL;
+    if (stack.record.through_lobe != NO_INDEX)
+        pdf += layer_stack_probability(choice, CHOICE_THROUGH_LOBE) *
+               layer_stack_lobe_pdf(layer_stack_through_distribution(stack),
+                                    layer_stack_through_width(stack, wo.z, wo.z), wo, mirrored);
+    return pdf;
+}
+#endif
+
 /// Pdf per solid angle with which `layer_stack_sample` picks wi by one of the components that are
-/// not deltas. Both directions above the surface.
+/// not deltas. wo lies above the surface, wi too unless this is a sheet.
 DEVICE_FUNCTION real layer_stack_pdf(LayerStackView stack, const LayerChoice* choice, Vec3 wo,
                                      Vec3 wi) {
+#if FEATURE_SHEETS
+    if (wi.z < REAL(0.0))
+        return layer_stack_through_pdf(stack, choice, wo, wi);
+#endif
     real pdf = layer_stack_probability(choice, CHOICE_DIFFUSE) * wi.z * INV_PI_REAL;
 #if FEATURE_ROUGH
     if (stack.record.has_top_lobe) {
@@ -115,7 +181,7 @@ DEVICE_FUNCTION real layer_stack_pdf(LayerStackView stack, const LayerChoice* ch
     return pdf;
 }
 
-#if FEATURE_ROUGH || FEATURE_DEEPER_LOBES
+#if FEATURE_ROUGH || FEATURE_DEEPER_LOBES || FEATURE_SHEETS
 DEVICE_FUNCTION Vec3 layer_stack_sample_lobe(int distribution, real alpha, Vec3 wo, real u1,
                                              real u2) {
     const Vec3 h = microfacet_sample(distribution, alpha, wo, u1, u2);
@@ -123,8 +189,24 @@ DEVICE_FUNCTION Vec3 layer_stack_sample_lobe(int distribution, real alpha, Vec3 
 }
 #endif
 
-/// Direction of one component, chosen by u0; *is_delta says whether it is the mirror. The result
-/// may lie below the surface (z <= 0): then the path ends.
+#if FEATURE_SHEETS
+/// Direction of a component on the far side.
+DEVICE_FUNCTION Vec3 layer_stack_sample_through(LayerStackView stack, const LayerChoice* choice,
+                                                Vec3 wo, real u0, real u1, real u2, int* is_delta) {
+    if (u0 < choice->cumulative[CHOICE_STRAIGHT]) {
+        *is_delta = 1;
+        return vec3_scale(wo, REAL(-1.0));
+    }
+    Vec3 wi = sampling_cosine(u1, u2);
+    if (u0 < choice->cumulative[CHOICE_THROUGH_LOBE])
+        wi = layer_stack_sample_lobe(layer_stack_through_distribution(stack),
+                                     layer_stack_through_width(stack, wo.z, wo.z), wo, u1, u2);
+    return vec3(wi.x, wi.y, -wi.z);
+}
+#endif
+
+/// Direction of one component, chosen by u0; *is_delta says whether it is the mirror, or straight
+/// on. The result may lie below the surface (z <= 0): then the path ends, but at a sheet.
 DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice* choice, Vec3 wo,
                                         real u0, real u1, real u2, int* is_delta) {
     *is_delta = 0;
@@ -145,6 +227,10 @@ DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice*
             return layer_stack_sample_lobe(
                 (int)stack.lobes[l].distribution,
                 layer_stack_lobe_width(stack, stack.lobes[l], wo.z, wo.z), wo, u1, u2);
+#endif
+#if FEATURE_SHEETS
+    if (stack.record.other_side != NO_INDEX && !(u0 < choice->cumulative[CHOICE_DIFFUSE]))
+        return layer_stack_sample_through(stack, choice, wo, u0, u1, u2, is_delta);
 #endif
     return sampling_cosine(u1, u2);
 }

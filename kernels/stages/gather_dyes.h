@@ -18,9 +18,10 @@ static void clear_dyes(DyeChannels* reached) {
 }
 
 /// A channel's function of the direction for one vector of lanes. Unlike shares it may be negative.
-static Lanes dye_channel(const GatherContext* context, uint channel, TableStencil s, uint chunk) {
+static Lanes dye_channel(const GatherContext* context, uint dyes, uint channel, TableStencil s,
+                         uint chunk) {
     const size_t table = (size_t)context->phases * TABLE_NODES * LANES;
-    __global const float* rows = context->tables + context->material.dyes + channel * table +
+    __global const float* rows = context->tables + dyes + channel * table +
                                  ((size_t)context->phase * TABLE_NODES + s.node) * LANES;
     return (float)s.w0 * path_row(context, rows, chunk) +
            (float)s.w1 * path_row(context, rows + LANES, chunk) +
@@ -28,12 +29,12 @@ static Lanes dye_channel(const GatherContext* context, uint channel, TableStenci
            (float)s.w3 * path_row(context, rows + 3 * LANES, chunk);
 }
 
-/// Adds what one direction brings, `weight` cos / pdf.
-static void reach_dyes(const GatherContext* context, TableStencil si, float weight,
+/// Adds what one direction brings, `weight` cos / pdf; `dyes` is the table of its side.
+static void reach_dyes(const GatherContext* context, uint dyes, TableStencil si, float weight,
                        const Lanes* radiance, DyeChannels* reached) {
     for (uint a = 0u; a < context->material.dye_channels; ++a)
         for (uint c = 0u; c < PATH_CHUNKS; ++c)
-            reached->lanes[a][c] += weight * radiance[c] * dye_channel(context, a, si, c);
+            reached->lanes[a][c] += weight * radiance[c] * dye_channel(context, dyes, a, si, c);
 }
 
 /// Adds what leaves towards wo to the sum. Columns of the coupling are [channel a][lane i], their
@@ -61,7 +62,7 @@ static void leave_dyes(const GatherContext* context, TableStencil so, const DyeC
     for (uint c = 0u; c < PATH_CHUNKS; ++c) {
         Lanes left = (Lanes)(0.0f);
         for (uint b = 0u; b < channels; ++b)
-            left += dye_channel(context, b, so, c) * sent.lanes[b][c];
+            left += dye_channel(context, context->material.dyes, b, so, c) * sent.lanes[b][c];
         sum[c] += left < 0.0f ? (Lanes)(0.0f) : left;
     }
 }

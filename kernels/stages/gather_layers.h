@@ -55,7 +55,8 @@ static void gather_one(const GatherContext* context, DirectionRecord d, Vec3 wo,
                        GatherSums* sums) {
 #if FEATURE_DYES
     if (context->material.dyes != NO_INDEX) {
-        reach_dyes(context, table_stencil(d.z), d.diffuse, radiance, &sums->dyes);
+        reach_dyes(context, d.z < 0.0f ? context->material.dyes_far : context->material.dyes,
+                   table_stencil(fabs(d.z)), d.diffuse, radiance, &sums->dyes);
         d.diffuse = 0.0f;
     }
 #endif

@@ -126,11 +126,39 @@ Lanes lobe_lanes(const GatherContext* context, uint l, Vec3 wi, Vec3 wo, uint ch
 }
 #endif
 
+#if FEATURE_SHEETS
+/// Adds what a direction on the far side of a sheet brings straight through it, by the lobe of its
+/// rough faces, and scattered.
+void gather_through(const GatherContext* context, DirectionRecord d, TableStencil so,
+                    const Lanes* radiance, Lanes* up) {
+    const TableStencil si = table_stencil(-d.z);
+    const MaterialRecord m = context->material;
+    for (uint c = 0u; c < PATH_CHUNKS; ++c) {
+        Lanes through = (Lanes)(0.0f);
+        if (d.delta > 0.0f && m.through_delta != NO_INDEX)
+            through += d.delta * stack_lookup(context, m.through_delta, so, c);
+        if (d.top > 0.0f)
+            through += d.top * stack_lookup(context, m.through_lobe, si, c) *
+                       stack_lookup(context, m.through_lobe, so, c);
+        if (d.residual > 0.0f && m.through_own != NO_INDEX)
+            through += d.residual * stack_lookup(context, m.through_far, si, c) *
+                       stack_lookup(context, m.through_own, so, c);
+        up[c] += radiance[c] * through;
+    }
+}
+#endif
+
 /// Adds what one direction brings to the substrate (`down`; `first`: what meets it once, see
 /// oren-nayar) and to the specular part (`up`).
 void gather_direction(const GatherContext* context, DirectionRecord d, Vec3 wo, TableStencil so,
                       __global const float* lobe_weights, const Lanes* radiance, Lanes* down,
                       Lanes* first, Lanes* up) {
+#if FEATURE_SHEETS
+    if (d.z < 0.0f) {
+        gather_through(context, d, so, radiance, up);
+        return;
+    }
+#endif
     const TableStencil si = table_stencil(d.z);
     const MaterialRecord m = context->material;
     const Vec3 wi = vec3(d.x, d.y, d.z);

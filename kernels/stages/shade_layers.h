@@ -17,9 +17,28 @@ LayerStackView layer_stack_of(const ShadeScene* scene, uint material) {
     return stack;
 }
 
-/// The scalar weights of all components in one direction; `scale` holds cos / pdf.
+#if FEATURE_SHEETS
+/// The scalar weights of what goes through a sheet from a direction on its far side.
+static DirectionRecord through_weights(LayerStackView stack, Vec3 wi, Vec3 wo, real scale,
+                                       __global float* lobe_weights) {
+    DirectionRecord d = {wi.x, wi.y, wi.z, scale, 0.0f, scale, 0.0f, 0.0f};
+    if (stack.record.through_lobe != NO_INDEX)
+        d.top = scale * layer_stack_through_lobe(stack, wi, wo);
+#if FEATURE_DEEPER_LOBES
+    for (uint l = 0u; l < stack.record.lobe_count; ++l)
+        lobe_weights[l] = 0.0f;
+#endif
+    return d;
+}
+#endif
+
+/// The scalar weights of all components in one direction; `scale` holds |cos| / pdf.
 static DirectionRecord direction_weights(LayerStackView stack, Vec3 wi, Vec3 wo, real scale,
                                          __global float* lobe_weights) {
+#if FEATURE_SHEETS
+    if (wi.z < 0.0f)
+        return through_weights(stack, wi, wo, scale, lobe_weights);
+#endif
     DirectionRecord d = {wi.x, wi.y, wi.z, 0.0f, 0.0f, scale, 0.0f, 0.0f};
     const LayerDiffuse factors = layer_stack_diffuse(stack, wi, wo);
     d.diffuse = scale * factors.diffuse;
@@ -44,7 +63,7 @@ static void connect_layers(const ShadeScene* scene, SurfacePoint point, LayerSta
     if (!(sample.weight > 0.0f))
         return;
     const real selection = scene->lights[step->vertex.light].selection;
-    real scale = wi.z * sample.weight / selection;
+    real scale = fabs(wi.z) * sample.weight / selection;
     if (sample.pdf > 0.0f)
         scale *=
             lights_mis_weight(selection * sample.pdf, layer_stack_pdf(stack, choice, point.wo, wi));
@@ -53,9 +72,10 @@ static void connect_layers(const ShadeScene* scene, SurfacePoint point, LayerSta
 }
 #endif
 
-/// The mirror direction's weights; nothing of the other components goes there.
-static DirectionRecord mirror_weights(LayerStackView stack, Vec3 wi, real probability,
-                                      __global float* lobe_weights) {
+/// The weights of the mirror direction, or of straight on; nothing of the other components goes
+/// there.
+static DirectionRecord delta_weights(LayerStackView stack, Vec3 wi, real probability,
+                                     __global float* lobe_weights) {
     DirectionRecord mirror = {wi.x, wi.y, wi.z, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
     mirror.delta = 1.0f / probability;
 #if FEATURE_DEEPER_LOBES
@@ -63,6 +83,15 @@ static DirectionRecord mirror_weights(LayerStackView stack, Vec3 wi, real probab
         lobe_weights[l] = 0.0f;
 #endif
     return mirror;
+}
+
+/// Probability of the delta that wi is the direction of.
+static real delta_probability(const LayerChoice* choice, Vec3 wi) {
+#if FEATURE_SHEETS
+    if (wi.z < 0.0f)
+        return layer_stack_probability(choice, CHOICE_STRAIGHT);
+#endif
+    return choice->cumulative[CHOICE_DELTA];
 }
 
 /// Samples the direction in which the path goes on. It ends where none leaves the surface.
@@ -76,11 +105,11 @@ static void leave_layers(SurfacePoint point, LayerStackView stack, const LayerCh
     const real pdf = is_delta ? -1.0f : layer_stack_pdf(stack, choice, point.wo, wi);
     step->state.bsdf_pdf = pdf;
     if (is_delta)
-        step->vertex.next = mirror_weights(stack, wi, choice->cumulative[CHOICE_DELTA] * survival,
-                                           step->lobe_weights);
-    else if (pdf > 0.0f)
         step->vertex.next =
-            direction_weights(stack, wi, point.wo, wi.z / (pdf * survival), step->lobe_weights);
+            delta_weights(stack, wi, delta_probability(choice, wi) * survival, step->lobe_weights);
+    else if (pdf > 0.0f)
+        step->vertex.next = direction_weights(stack, wi, point.wo, fabs(wi.z) / (pdf * survival),
+                                              step->lobe_weights);
     else
         return;
     step->vertex.has_next = 1u;

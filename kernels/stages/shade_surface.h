@@ -62,6 +62,7 @@ typedef struct {
     Vec3 geometric; ///< normal on the side of the camera
     Vec3 wo;        ///< towards the camera, local
     uint material;
+    int is_sheet; ///< light may leave on the far side, too
 } SurfacePoint;
 
 #if FEATURE_TEXTURES || FEATURE_REFLECTANCE_IMAGE
@@ -126,10 +127,17 @@ static SurfacePoint surface_point(const ShadeScene* scene, const ShadeStep* step
     }
     shading = vec3_dot(shading, to_camera) > 0.0f ? shading : point.geometric;
     point.material = hit.material;
+    point.is_sheet = 0;
 #if FEATURE_TEXTURES
     const Random4 u = random_4(step->state.pixel, step->state.sample,
                                TEXTURE_DIMENSION + step->depth, scene->render.seed);
     point.material = choose_material(scene, hit, u, to_camera, &shading);
+#endif
+#if FEATURE_SHEETS
+    const uint other_side = scene->materials[point.material].other_side;
+    point.is_sheet = other_side != NO_INDEX;
+    if (point.is_sheet && vec3_dot(hit_normal(hit), to_camera) < 0.0f)
+        point.material = other_side;
 #endif
     point.frame = sampling_frame(shading);
     point.wo = sampling_to_local(point.frame, to_camera);
@@ -137,8 +145,12 @@ static SurfacePoint surface_point(const ShadeScene* scene, const ShadeStep* step
 }
 
 /// Returns true when a direction, `wi` in the local frame, leaves the surface on the side that the
-/// path came from.
+/// path came from, or a sheet on either side.
 int surface_is_left(SurfacePoint point, Vec3 wi, Vec3 direction) {
+#if FEATURE_SHEETS
+    if (point.is_sheet && wi.z < 0.0f)
+        return vec3_dot(point.geometric, direction) < 0.0f;
+#endif
     return wi.z > 0.0f && vec3_dot(point.geometric, direction) > 0.0f;
 }
 

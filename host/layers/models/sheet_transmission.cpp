@@ -45,10 +45,6 @@ double average(const Share& share) {
     return integrate_pieces({0.0, 1.0}, nodes, [&](double c) { return 2.0 * c * share(c); });
 }
 
-double product_form(double above, double below, double average) {
-    return average > 0.0 ? above * below * std::numbers::inv_pi / average : 0.0;
-}
-
 } // namespace
 
 SheetTransmission::Sides SheetTransmission::sides_of(const StackElements& sheet) {
@@ -88,22 +84,41 @@ double SheetTransmission::scattered_albedo(double cos_theta, Side from) const {
 }
 
 double SheetTransmission::beside_lobe(double cos_theta, Side from) const {
+    if (!has_lobe())
+        return 0.0;
     return std::max(specular_albedo(cos_theta, from) - tables_.albedo(cos_theta), 0.0);
+}
+
+double SheetTransmission::product_amplitude(double cos_theta, Side side) const {
+    const double average = average_beside_ + average_scattered_;
+    if (!(average > 0.0))
+        return 0.0;
+    return (beside_lobe(cos_theta, side) + scattered_albedo(cos_theta, side)) /
+           std::sqrt(std::numbers::pi * average);
+}
+
+double SheetTransmission::product(double cos_above, double cos_below) const {
+    return product_amplitude(cos_above, Side::Above) * product_amplitude(cos_below, Side::Below);
 }
 
 double SheetTransmission::specular(const kernels::Vec3& above,
                                    const kernels::Vec3& below_mirrored) const {
-    if (!smooth_.empty())
+    if (!has_lobe())
         return 0.0;
-    const double lobe = tables_.amplitude(above.z) * tables_.amplitude(below_mirrored.z) *
+    const double lobe = lobe_amplitude(above.z) * lobe_amplitude(below_mirrored.z) *
                         lobe_value(lobe_, above, below_mirrored);
-    return lobe + product_form(beside_lobe(above.z, Side::Above),
-                               beside_lobe(below_mirrored.z, Side::Below), average_beside_);
+    const double beside = average_beside_ > 0.0
+                              ? average_beside_ / (average_beside_ + average_scattered_) *
+                                    product(above.z, below_mirrored.z)
+                              : 0.0;
+    return lobe + beside;
 }
 
 double SheetTransmission::scattered(double cos_above, double cos_below) const {
-    return product_form(scattered_albedo(cos_above, Side::Above),
-                        scattered_albedo(cos_below, Side::Below), average_scattered_);
+    if (!(average_scattered_ > 0.0))
+        return 0.0;
+    return average_scattered_ / (average_beside_ + average_scattered_) *
+           product(cos_above, cos_below);
 }
 
 } // namespace reradiant

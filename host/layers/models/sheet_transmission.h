@@ -2,7 +2,7 @@
 
 #include "host/layers/models/stack_bsdf.h"
 #include "host/layers/rough/specular_lobes.h"
-#include "host/layers/sources/source_transport.h"
+#include "host/layers/stack/side.h"
 
 #include <array>
 #include <memory>
@@ -13,10 +13,10 @@ namespace reradiant {
 /// the delta of smooth faces, a lobe of rough ones, and what slabs scatter.
 ///
 /// The lobe is that of facets over the half vector of one direction and the mirror image of the
-/// other, as wide as both faces spread light (kernels/scatter/lobe_width.h). What slabs scatter has
-/// a product form, t(above) t(below) / (pi average), as the residual of the light that comes back
-/// has (reradiant/stack_model.h). Both are reciprocal between the sides and carry the flux that
-/// adding gives them.
+/// other, as wide as both faces spread light (kernels/scatter/lobe_width.h). What slabs scatter,
+/// and what is left of the lobe's flux, has a product form, t(above) t(below) / (pi average), as
+/// the residual of the light that comes back has (reradiant/stack_model.h). Both are reciprocal
+/// between the sides and carry the flux that adding gives them.
 class SheetTransmission {
 public:
     explicit SheetTransmission(const StackElements& sheet);
@@ -36,13 +36,23 @@ public:
     double specular(const kernels::Vec3& above, const kernels::Vec3& below_mirrored) const;
     double scattered(double cos_above, double cos_below) const;
 
+    /// True where a face is rough: there is a lobe and no delta.
+    bool has_lobe() const { return smooth_.empty(); }
+    /// Amplitude of the lobe, the same from both sides.
+    double lobe_amplitude(double cos_theta) const { return tables_.amplitude(cos_theta); }
+    /// Approximate share of the flux that the lobe holds.
+    double lobe_albedo(double cos_theta) const { return tables_.albedo(cos_theta); }
+    /// t of a side over sqrt(pi average): the product of both sides' is the product form's value.
+    double product_amplitude(double cos_theta, Side side) const;
+
 private:
     using Sides = std::array<std::shared_ptr<const StackBsdf>, 2>;
 
     static std::size_t index(Side side) { return side == Side::Above ? 0 : 1; }
     static Sides sides_of(const StackElements& sheet);
-    /// Share of the lobe's flux that no amplitude brings: it has a product form.
+    /// Share of the lobe's flux that no amplitude brings.
     double beside_lobe(double cos_theta, Side from) const;
+    double product(double cos_above, double cos_below) const;
 
     StackElements smooth_; ///< without scattering; empty where a face is rough
     Sides whole_, unscattered_;

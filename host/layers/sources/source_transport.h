@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/layers/sources/depth_cells.h"
+#include "host/layers/stack/side.h"
 #include "reradiant/stack_elements.h"
 
 #include <Eigen/Core>
@@ -12,9 +13,6 @@
 #include <vector>
 
 namespace reradiant {
-
-/// The side of a stack that light comes from or goes to.
-enum class Side { Above, Below };
 
 /// What a stack does at one wavelength to light that is sent out within it: by the depth cells of
 /// its dyed slabs, from the air down, and by a diffuse substrate, which comes last. A cell sends

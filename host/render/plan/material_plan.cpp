@@ -1,6 +1,7 @@
 #include "host/render/plan/material_plan.h"
 
 #include "host/layers/models/weidlich_wilkie_bsdf.h"
+#include "host/layers/stack/stack_variants.h"
 #include "host/layers/walk/walk_surface.h"
 #include "host/render/tables/dyed_operator.h"
 #include "host/render/tables/stack_optics.h"
@@ -78,8 +79,29 @@ private:
         plan_.features.spectral_stack = depends_on_wavelength(material_);
         const std::uint64_t tables = 1 + (plan_.has_delta ? 1 : 0) + (plan_.has_residual ? 1 : 0) +
                                      plan_.counts.lobes; // transmission first
-        plan_.counts.floats +=
-            tables * (plan_.features.spectral_stack ? spectral_nodes() : TABLE_NODES);
+        const std::uint64_t nodes = plan_.features.spectral_stack ? spectral_nodes() : TABLE_NODES;
+        plan_.counts.floats += tables * nodes;
+        if (material_.stack.is_sheet())
+            plan_sheet(nodes);
+    }
+
+    /// A sheet has records of its own for each side, and what goes through it.
+    void plan_sheet(std::uint64_t nodes) {
+        plan_.features.sheets = true;
+        plan_.counts.materials = 2;
+        plan_.counts.layers *= 2;
+        plan_.counts.lobes *= 2;
+        plan_.counts.floats *= 2;
+        const bool is_rough = !material_.stack.is_smooth();
+        plan_.counts.floats += row_;  // a substrate that sends nothing back, for the other side
+        plan_.counts.floats += nodes; // straight on, or the amplitude of a lobe
+        if (is_rough || material_.stack.scatters())
+            plan_.counts.floats += 2 * nodes;
+        if (wavelengths_.hero > 0)
+            throw_input_error(material_.position,
+                              fmt::format("material '{}': sheets do not go with hero wavelengths",
+                                          material_.name),
+                              "take --wavelengths comb");
     }
 
     /// The surface of a part at the reference wavelength.
@@ -100,7 +122,7 @@ private:
     /// Under adding smooth interfaces make a mirror down to the first rough one, and the residual
     /// takes what rough ones and slabs scatter.
     void find_specular_of_adding() {
-        plan_.has_delta = at_any_wavelength([](const StackElements& stack) {
+        const auto has_mirror = [](const StackElements& stack) {
             for (const StackElement& element : above_substrate(stack)) {
                 const auto* interface = std::get_if<SurfaceValues>(&element);
                 if (interface && interface->scatters())
@@ -109,8 +131,12 @@ private:
                     return true;
             }
             return false;
+        };
+        plan_.has_delta = at_any_wavelength([&](const StackElements& stack) {
+            return has_mirror(stack) ||
+                   (material_.stack.is_sheet() && has_mirror(upside_down(stack)));
         });
-        const bool facets_are_all = has_facet_lobe(material_.stack) &&
+        const bool facets_are_all = has_facet_lobe(stack_) && !material_.stack.is_sheet() &&
                                     material_.stack.layers.size() == 1 &&
                                     !material_.stack.scatters();
         plan_.has_residual =
@@ -138,6 +164,13 @@ private:
         }
     }
 
+    bool has_rough_top() const {
+        if (parts_.empty())
+            return false;
+        return part(0).alpha > 0.0 ||
+               (material_.stack.is_sheet() && part(parts_.size() - 1).alpha > 0.0);
+    }
+
     /// Finds what the kernels evaluate for themselves, and whether lane by lane.
     void plan_parts() {
         const bool nested = plan_.choice.model == Model::WeidlichWilkie && !is_all_smooth(stack_);
@@ -145,7 +178,7 @@ private:
         const bool dispersive = spectra.is_dispersive();
         plan_.model_a = !nested ? 0u : dispersive ? MODEL_A_PER_LANE : MODEL_A;
         plan_.features.weidlich_wilkie = nested;
-        plan_.features.rough = !parts_.empty() && part(0).alpha > 0.0;
+        plan_.features.rough = has_rough_top();
         if (nested && dispersive)
             plan_.ior_ratios = parts_.size();
         else if (plan_.features.rough && !spectra.layers.empty() &&
@@ -163,7 +196,7 @@ private:
     void plan_lobes() {
         plan_.counts.lobes = static_cast<std::uint64_t>(plan_.features.lobes);
         plan_.features.deeper_lobes = plan_.counts.lobes > 0;
-        if (plan_.choice.model == Model::Adding && has_facet_lobe(material_.stack))
+        if (plan_.choice.model == Model::Adding && has_facet_lobe(stack_))
             plan_.counts.floats += SHAPE_TABLE_SIZE;
         if (plan_.choice.model == Model::WeidlichWilkie)
             for (const DeeperLobe& lobe : weidlich_wilkie_lobes(stack_))
@@ -252,8 +285,6 @@ private:
             throw_input_error(material_.position,
                               fmt::format("material '{}': {}", material_.name, reason), remedy);
         };
-        if (plan_.choice.model != Model::Adding)
-            refuse("dyes in layers are rendered by adding alone", "use the model adding");
         if (wavelengths_.hero > 0)
             refuse("dyes in layers do not go with hero wavelengths", "take --wavelengths comb");
         if (plan_.features.reflectance_image)
@@ -264,7 +295,9 @@ private:
         const auto channels = static_cast<std::uint64_t>(plan_.dyes->channels);
         plan_.features.dyes = true;
         plan_.features.dye_channels = plan_.dyes->channels;
-        plan_.counts.floats += channels * spectral_nodes() + channels * channels * lanes_ * row_;
+        const std::uint64_t sides = material_.stack.is_sheet() ? 2 : 1;
+        plan_.counts.floats +=
+            sides * channels * spectral_nodes() + channels * channels * lanes_ * row_;
     }
 
     /// True where light is spread on its way to the substrate at the middle of the spectrum, for

@@ -25,7 +25,7 @@ struct SlabDepths {
 /// Records and floats that one material adds to the tables at most; its choice table, which depends
 /// on the whole scene, is not counted.
 struct TableCounts {
-    std::uint64_t layers = 0, lobes = 0, walk_parts = 0, floats = 0;
+    std::uint64_t materials = 1, layers = 0, lobes = 0, walk_parts = 0, floats = 0;
 };
 
 /// A `MaterialPlan` says what one material of a render needs, and holds what finding that out took

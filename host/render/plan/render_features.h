@@ -46,4 +46,9 @@ struct RenderFeatures {
     std::vector<std::string> left_out() const;
 };
 
+/// Components that a direction is chosen among (CHOICES in kernels/stack/layer_stack.h).
+inline int choice_count(const RenderFeatures& features) {
+    return 3 + features.lobes + (features.sheets ? 3 : 0);
+}
+
 } // namespace reradiant

@@ -179,19 +179,21 @@ private:
 
     void count_tables() {
         BufferCounts& counts = plan_.counts;
-        counts.materials = scene_.materials.size();
-        counts.surfaces = scene_.surfaces.empty() ? counts.materials : scene_.surfaces.size();
+        counts.surfaces =
+            scene_.surfaces.empty() ? scene_.materials.size() : scene_.surfaces.size();
         counts.textures = scene_.textures.size();
         counts.lights = scene_.lights.size();
         counts.tables = plan_.lights.floats + texture_floats(scene_);
-        const auto choices = 4 + static_cast<std::uint64_t>(plan_.features.lobes);
+        const std::uint64_t choices = static_cast<std::uint64_t>(choice_count(plan_.features)) + 1;
+        counts.materials = 0;
         for (const MaterialPlan& material : plan_.materials) {
+            counts.materials += material.counts.materials;
             counts.layers += material.counts.layers;
             counts.lobes += material.counts.lobes;
             counts.walk_parts += material.counts.walk_parts;
             counts.tables += material.counts.floats;
             if (material.choice.model != Model::Walk)
-                counts.tables += TABLE_NODES * choices;
+                counts.tables += material.counts.materials * TABLE_NODES * choices;
         }
         plan_.host_bytes += counts.tables * sizeof(float);
     }

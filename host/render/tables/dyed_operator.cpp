@@ -37,21 +37,26 @@ Eigen::MatrixXd dyes_on_lanes(const Layer& layer, const WavelengthPlan& plan, in
     return sum;
 }
 
-/// What reaches the sources at the nodes of the tables: (TABLE_NODES, sources).
-Eigen::MatrixXd reached_at_nodes(const SourceTransport& transport) {
-    Eigen::MatrixXd reached(TABLE_NODES, transport.sources());
+/// What reaches the sources at the nodes of the tables: (TABLE_NODES, sources), twice as many rows
+/// for a sheet.
+Eigen::MatrixXd reached_at_nodes(const SourceTransport& transport, bool is_sheet) {
+    Eigen::MatrixXd reached((is_sheet ? 2 : 1) * TABLE_NODES, transport.sources());
     for (int node = 0; node < TABLE_NODES; ++node)
-        reached.row(node) = transport.reached(node_cosine(node), Side::Above).transpose();
+        for (const Side side : {Side::Above, Side::Below})
+            if (side == Side::Above || is_sheet)
+                reached.row(node_row(node, side)) =
+                    transport.reached(node_cosine(node), side).transpose();
     return reached;
 }
 
-/// Square roots of the nodes' shares of a uniform radiance's flux.
-Eigen::VectorXd root_weights() {
-    Eigen::VectorXd weights(TABLE_NODES);
-    for (int node = 0; node < TABLE_NODES; ++node) {
+/// Square roots of the nodes' shares of a uniform radiance's flux, for so many rows.
+Eigen::VectorXd root_weights(Eigen::Index rows) {
+    Eigen::VectorXd weights(rows);
+    for (Eigen::Index row = 0; row < rows; ++row) {
+        const int node = static_cast<int>(row) % TABLE_NODES;
         const double low = node_cosine(std::max(node - 1, 0));
         const double high = node_cosine(std::min(node + 1, TABLE_NODES - 1));
-        weights(node) = std::sqrt(0.5 * (high - low) * (high + low));
+        weights(row) = std::sqrt(0.5 * (high - low) * (high + low));
     }
     return weights;
 }
@@ -76,7 +81,8 @@ Eigen::VectorXd source_scales(const StackCells& cells, Eigen::Index sources) {
 /// channels from 1 on, the share that they do not hold.
 ThinSvd decompose(const Eigen::MatrixXd& reached, const Eigen::VectorXd& scales,
                   std::vector<double>& left_out) {
-    const ThinSvd svd = thin_svd(root_weights().asDiagonal() * reached * scales.asDiagonal());
+    const ThinSvd svd =
+        thin_svd(root_weights(reached.rows()).asDiagonal() * reached * scales.asDiagonal());
     const double whole = svd.s.norm();
     for (int channels = 1; channels <= most_channels; ++channels) {
         const Eigen::Index rest = std::max<Eigen::Index>(svd.s.size() - channels, 0);
@@ -137,8 +143,9 @@ private:
             const auto band = static_cast<Eigen::Index>(lane);
             const SourceTransport& fine = stack.fine().at(band);
             const Eigen::VectorXd scales = source_scales(stack.fine_cells(), fine.sources());
-            lanes[lane] = {decompose(reached_at_nodes(fine), scales, shares[lane]), scales,
-                           reached_at_nodes(stack.coarse().at(band))};
+            const bool is_sheet = material_.stack.is_sheet();
+            lanes[lane] = {decompose(reached_at_nodes(fine, is_sheet), scales, shares[lane]),
+                           scales, reached_at_nodes(stack.coarse().at(band), is_sheet)};
         });
         for (const std::vector<double>& own : shares)
             for (std::size_t k = 0; k < left_out.size(); ++k)
@@ -153,7 +160,7 @@ private:
 
     Channels channels_of(const Lane& lane, int count) const {
         const Eigen::Index m = std::min<Eigen::Index>(count, lane.svd.s.size());
-        const Eigen::VectorXd weights = root_weights();
+        const Eigen::VectorXd weights = root_weights(lane.svd.u.rows());
         Channels channels;
         const Eigen::MatrixXd u = lane.svd.u.leftCols(m);
         channels.functions = weights.cwiseInverse().asDiagonal() * u;
@@ -201,6 +208,10 @@ private:
 };
 
 } // namespace
+
+Eigen::Index node_row(int node, Side side) {
+    return node + (side == Side::Above ? 0 : TABLE_NODES);
+}
 
 DyedOperator dyed_operator(const Material& material, const SubstrateOnCells& on_cells,
                            const WavelengthPlan& plan) {

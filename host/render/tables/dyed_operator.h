@@ -20,11 +20,15 @@ namespace reradiant {
 /// with few channels a, b. T are the functions of the direction that best describe, at each
 /// wavelength, what reaches the depth cells and the substrate (singular vectors).
 struct ChannelOperator {
-    /// By lane: what reaches the channels, (TABLE_NODES, channels), 1 where a flux does by itself.
+    /// By lane: what light from the nodes' directions brings to the channels, (TABLE_NODES,
+    /// channels); of a sheet those below follow, (2 TABLE_NODES, channels).
     std::vector<Eigen::MatrixXd> reached;
     /// 1/sr, (channels * lanes, channels * lanes), lanes run fastest; rows = emission.
     Eigen::MatrixXd coupling;
 };
+
+/// Row of a node's direction on a side in ChannelOperator::reached.
+Eigen::Index node_row(int node, Side side);
 
 /// A material's dyes at every phase of a plan.
 struct DyedOperator {
@@ -35,11 +39,11 @@ struct DyedOperator {
     bool shifts_up = true;      ///< nothing is sent out below what excites it
     std::vector<ChannelOperator> phases;
 
-    /// What reaches a channel at a node's direction; 0 for a channel that a lane lacks.
-    double reached(int phase, int lane, int node, int channel) const {
+    /// What reaches a channel at a node's direction on a side; 0 for a channel that a lane lacks.
+    double reached(int phase, int lane, int node, int channel, Side side) const {
         const Eigen::MatrixXd& own =
             phases[static_cast<std::size_t>(phase)].reached[static_cast<std::size_t>(lane)];
-        return channel < own.cols() ? own(node, channel) : 0.0;
+        return channel < own.cols() ? own(node_row(node, side), channel) : 0.0;
     }
 };
 

@@ -18,17 +18,21 @@ namespace reradiant {
 
 namespace {
 
-/// Builds one material's records and tables.
+/// Builds one material's records and tables, of a sheet for one side.
 class MaterialTables {
 public:
     MaterialTables(const Material& material, const MaterialPlan& plan,
-                   const WavelengthPlan& wavelengths, int lobes, SceneTables& out)
-        : material_(material), plan_(plan), lobes_(lobes), out_(out),
-          lanes_(wavelengths, out.tables), optics_(material, plan.choice.model, wavelengths),
-          stack_(material_at(material, reference_nm)), parts_(reflecting_elements(stack_)) {}
+                   const WavelengthPlan& wavelengths, const RenderFeatures& features,
+                   MaterialOptics optics, SceneTables& out)
+        : material_(material), plan_(plan), features_(features), out_(out),
+          lanes_(wavelengths, out.tables), optics_(std::move(optics)),
+          stack_(material_at(material, reference_nm, optics_.side())),
+          parts_(reflecting_elements(stack_)) {}
 
-    void append() {
+    /// `above` is the record of a sheet seen from above, where this is the other side of it.
+    void append(const MaterialRecord* above = nullptr) {
         record_.walk = NO_INDEX;
+        record_.other_side = NO_INDEX;
         record_.spectral = optics_.is_spectral() ? 1u : 0u;
         note_thick_films();
         append_layers();
@@ -37,13 +41,14 @@ public:
         append_stack();
         const LaneOperator substrate = append_substrate(material_, plan_.choice.model, optics_,
                                                         *plan_.on_cells, lanes_, record_, out_);
-        append_dyes();
-        const auto middle = static_cast<std::size_t>(lanes_.phases() / 2);
-        record_.choice = append_choice(
-            optics_,
-            plan_.dyes ? dyed_share(plan_.dyes->phases[middle])
-                       : substrate_share(optics_, substrate, static_cast<int>(middle)),
-            lobes_, lanes_);
+        record_.dyes = record_.dyes_far = record_.dye_coupling = NO_INDEX;
+        record_.through_delta = record_.through_lobe = NO_INDEX;
+        record_.through_own = record_.through_far = NO_INDEX;
+        if (above)
+            take_from_other_side(*above);
+        else
+            append_both_sides();
+        append_choices(substrate);
         out_.materials.push_back(record_);
     }
 
@@ -91,7 +96,7 @@ private:
             out_.layers.push_back(layer);
             record_.layer_count += &surface == conductor_of(stack_) ? 0u : 1u;
         }
-        record_.has_top_lobe = plan_.features.rough ? 1u : 0u;
+        record_.has_top_lobe = !parts_.empty() && part(0).alpha > 0.0 ? 1u : 0u;
     }
 
     LayerRecord& layer_record(std::size_t p) { return out_.layers[record_.first_layer + p]; }
@@ -117,7 +122,7 @@ private:
     }
 
     StackElements stack_in(int phase, int lane) const {
-        return material_at(material_, lanes_.plan().wavelength_nm(lane, phase));
+        return material_at(material_, lanes_.plan().wavelength_nm(lane, phase), optics_.side());
     }
 
     void append_reflectance(std::size_t p) {
@@ -172,33 +177,104 @@ private:
 
     /// [node] for a stack whose optics are grey, [phase][node][lane] for a spectral one.
     std::uint32_t append_nodes(const std::function<double(const StackBsdf&, double)>& value) {
+        return append_cosines([&] { return [&](double c) { return value(optics_.any(), c); }; },
+                              [&](int phase, int lane) {
+                                  return [&, phase, lane](double c) {
+                                      return value(optics_.at(phase, lane), c);
+                                  };
+                              });
+    }
+
+    /// `grey` and `spectral` return functions of the cosine: of any wavelength, and of a lane's.
+    template <typename Grey, typename Spectral>
+    std::uint32_t append_cosines(const Grey& grey, const Spectral& spectral) {
         if (!optics_.is_spectral())
-            return lanes_.append_nodes([&](double c) { return value(optics_.any(), c); });
+            return lanes_.append_nodes(grey());
         return lanes_.append_nodes_of_lanes(
-            [&](double c, int phase, int lane) { return value(optics_.at(phase, lane), c); });
+            [&](double c, int phase, int lane) { return spectral(phase, lane)(c); });
+    }
+
+    void append_choices(const LaneOperator& substrate) {
+        const int phase = lanes_.phases() / 2;
+        const Side own = optics_.side();
+        if (!plan_.dyes) {
+            record_.choice = append_choice(optics_, substrate_share(optics_, substrate, phase), {},
+                                           features_, lanes_);
+            return;
+        }
+        const ChannelOperator& dyes = plan_.dyes->phases[static_cast<std::size_t>(phase)];
+        const DiffuseShare through =
+            optics_.is_sheet() ? dyed_share(dyes, opposite(own), own) : DiffuseShare{};
+        record_.choice =
+            append_choice(optics_, dyed_share(dyes, own, own), through, features_, lanes_);
+    }
+
+    /// The tables that both sides of a sheet share, or the one side that there is.
+    void append_both_sides() {
+        if (plan_.dyes)
+            append_dyes(*plan_.dyes);
+        if (optics_.is_sheet())
+            append_through();
+    }
+
+    void take_from_other_side(const MaterialRecord& above) {
+        record_.dyes = above.dyes_far;
+        record_.dyes_far = above.dyes;
+        record_.dye_coupling = above.dye_coupling;
+        record_.dye_channels = above.dye_channels;
+        record_.dyes_shift_up = above.dyes_shift_up;
+        record_.through_delta = above.through_delta;
+        record_.through_lobe = above.through_lobe;
+        record_.through_own = above.through_far;
+        record_.through_far = above.through_own;
+    }
+
+    void append_through() {
+        const auto nodes = [&](const auto& value) {
+            return append_cosines(
+                [&] { return value(optics_.any_sheet()); },
+                [&](int phase, int lane) { return value(optics_.sheet_at(phase, lane)); });
+        };
+        const bool has_lobe = optics_.any_sheet().has_lobe();
+        const auto straight_or_lobe = nodes([has_lobe](const SheetTransmission& sheet) {
+            return [&sheet, has_lobe](double c) {
+                return has_lobe ? sheet.lobe_amplitude(c) : sheet.delta(c);
+            };
+        });
+        (has_lobe ? record_.through_lobe : record_.through_delta) = straight_or_lobe;
+        if (!has_lobe && !material_.stack.scatters())
+            return;
+        const auto product = [&](Side side) {
+            return nodes([side](const SheetTransmission& sheet) {
+                return [&sheet, side](double c) { return sheet.product_amplitude(c, side); };
+            });
+        };
+        record_.through_own = product(Side::Above);
+        record_.through_far = product(Side::Below);
     }
 
     /// What dyes and the substrate beneath them send out: it stands instead of the substrate's
     /// operator, which no kernel asks for then.
-    void append_dyes() {
-        record_.dyes = record_.dye_coupling = NO_INDEX;
-        if (!plan_.dyes)
-            return;
-        const DyedOperator& dyes = *plan_.dyes;
+    void append_dyes(const DyedOperator& dyes) {
         record_.dye_channels = static_cast<std::uint32_t>(dyes.channels);
         record_.dyes_shift_up = dyes.shifts_up ? 1u : 0u;
-        for (int channel = 0; channel < dyes.channels; ++channel) {
-            const std::uint32_t offset = lanes_.append_table([&](int node, int phase, int lane) {
-                return dyes.reached(phase, lane, node, channel);
-            });
-            if (channel == 0)
-                record_.dyes = offset;
-        }
+        record_.dyes = append_channels(dyes, Side::Above);
+        if (optics_.is_sheet())
+            record_.dyes_far = append_channels(dyes, Side::Below);
         append_dye_coupling(dyes);
         out_.notes.push_back(fmt::format(
             "material '{}': dyes in {} depth cells (error {:.1g}), {} functions of the direction "
             "(error {:.1g})",
             material_.name, dyes.cells, dyes.depth_error, dyes.channels, dyes.channel_error));
+    }
+
+    std::uint32_t append_channels(const DyedOperator& dyes, Side side) {
+        const std::uint32_t offset = lanes_.here();
+        for (int channel = 0; channel < dyes.channels; ++channel)
+            lanes_.append_table([&](int node, int phase, int lane) {
+                return dyes.reached(phase, lane, node, channel, side);
+            });
+        return offset;
     }
 
     void append_dye_coupling(const DyedOperator& dyes) {
@@ -231,7 +307,7 @@ private:
 
     const Material& material_;
     const MaterialPlan& plan_;
-    int lobes_;
+    const RenderFeatures& features_;
     SceneTables& out_;
     LaneTables lanes_;
     MaterialOptics optics_;
@@ -243,8 +319,19 @@ private:
 } // namespace
 
 void append_material(const Material& material, const MaterialPlan& plan,
-                     const WavelengthPlan& wavelengths, int lobes, SceneTables& tables) {
-    MaterialTables(material, plan, wavelengths, lobes, tables).append();
+                     const WavelengthPlan& wavelengths, const RenderFeatures& features,
+                     const MaterialOptics& optics, SceneTables& tables) {
+    MaterialTables(material, plan, wavelengths, features, optics, tables).append();
+}
+
+void append_other_side(const Material& material, const MaterialPlan& plan,
+                       const WavelengthPlan& wavelengths, const RenderFeatures& features,
+                       const MaterialOptics& optics, std::size_t above, SceneTables& tables) {
+    const MaterialRecord record = tables.materials[above];
+    MaterialTables(material, plan, wavelengths, features, optics.seen_from(Side::Below), tables)
+        .append(&record);
+    tables.materials[above].other_side = static_cast<std::uint32_t>(tables.materials.size() - 1);
+    tables.materials.back().other_side = static_cast<std::uint32_t>(above);
 }
 
 } // namespace reradiant

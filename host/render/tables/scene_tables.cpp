@@ -4,6 +4,7 @@
 #include "host/render/tables/walk_tables.h"
 
 #include <algorithm>
+#include <map>
 
 namespace reradiant {
 
@@ -18,6 +19,26 @@ void drop_repeats(std::vector<std::string>& notes) {
     notes = std::move(once);
 }
 
+/// Appends all materials in their order; the other sides of sheets follow after them.
+void append_materials(const Scene& scene, const RenderPlan& plan, SceneTables& tables) {
+    std::map<std::size_t, MaterialOptics> sheets;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        const MaterialPlan& planned = plan.materials[i];
+        if (planned.choice.model == Model::Walk) {
+            append_walk_material(material, planned, plan.wavelengths, tables);
+            continue;
+        }
+        MaterialOptics optics(material, planned.choice.model, plan.wavelengths);
+        append_material(material, planned, plan.wavelengths, plan.features, optics, tables);
+        if (optics.is_sheet())
+            sheets.emplace(i, std::move(optics));
+    }
+    for (const auto& [index, optics] : sheets)
+        append_other_side(scene.materials[index], plan.materials[index], plan.wavelengths,
+                          plan.features, optics, index, tables);
+}
+
 } // namespace
 
 SceneTables build_scene_tables(const Scene& scene, const RenderPlan& plan) {
@@ -25,14 +46,7 @@ SceneTables build_scene_tables(const Scene& scene, const RenderPlan& plan) {
     tables.notes = plan.notes;
     tables.tables.reserve(plan.counts.tables);
     tables.camera = camera_record(scene.camera, scene.film);
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        const MaterialPlan& material = plan.materials[i];
-        if (material.choice.model == Model::Walk)
-            append_walk_material(scene.materials[i], material, plan.wavelengths, tables);
-        else
-            append_material(scene.materials[i], material, plan.wavelengths, plan.features.lobes,
-                            tables);
-    }
+    append_materials(scene, plan, tables);
     drop_repeats(tables.notes);
     append_surfaces(scene, tables);
     append_lights(scene, plan.lights, tables);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/render/plan/render_plan.h"
+#include "host/render/tables/stack_optics.h"
 #include "kernels/core/shared.h"
 #include "reradiant/wavelength_plan.h"
 
@@ -27,10 +28,15 @@ struct SceneTables {
     std::vector<std::string> notes; ///< models chosen, factorisation errors
 };
 
-/// Appends the tables of one material with a closed model. lobes: most deeper lobes of any material
-/// of the scene.
+/// Appends the tables of one material with a closed model. `features` are those of the scene.
 void append_material(const Material& material, const MaterialPlan& plan,
-                     const WavelengthPlan& wavelengths, int lobes, SceneTables& tables);
+                     const WavelengthPlan& wavelengths, const RenderFeatures& features,
+                     const MaterialOptics& optics, SceneTables& tables);
+
+/// Appends the other side of a sheet, whose record from above has the index `above`.
+void append_other_side(const Material& material, const MaterialPlan& plan,
+                       const WavelengthPlan& wavelengths, const RenderFeatures& features,
+                       const MaterialOptics& optics, std::size_t above, SceneTables& tables);
 
 /// Appends surfaces, textures and the images of these.
 void append_surfaces(const Scene& scene, SceneTables& tables);

@@ -12,27 +12,30 @@ namespace {
 
 /// Lobes besides the top one that adding makes at most: one of the light between the top's facets,
 /// one for each deeper rough interface and for each run of smooth ones beneath a rough one.
-int adding_lobe_count(const LayerStack& stack) {
+int adding_lobe_count(const StackElements& stack) {
     int count = has_facet_lobe(stack) ? 1 : 0;
-    bool below_rough = false, in_run = false;
-    for (std::size_t k = 0; k < stack.layers.size(); ++k) {
-        const bool rough = stack.layers[k].alpha > 0.0;
-        if (k > 0 && (rough || (below_rough && !in_run)))
+    bool below_rough = false, in_run = false, is_top = true;
+    for (const StackElement& element : above_substrate(stack)) {
+        const auto* interface = std::get_if<SurfaceValues>(&element);
+        if (!interface)
+            continue;
+        const bool rough = interface->alpha > 0.0;
+        if (!is_top && (rough || (below_rough && !in_run)))
             ++count;
         below_rough = below_rough || rough;
         in_run = below_rough && !rough;
+        is_top = false;
     }
     return count;
 }
 
 } // namespace
 
-bool has_facet_lobe(const LayerStack& stack) {
-    if (stack.layers.empty())
-        return false;
-    const Layer& top = stack.layers.front();
-    return top.alpha > 0.0 && top.scattering == Scattering::Multiple &&
-           top.distribution != Distribution::Blinn && top.ior(reference_nm) > 1.0;
+bool has_facet_lobe(const StackElements& stack) {
+    const auto* top = stack.empty() ? nullptr : std::get_if<SurfaceValues>(&stack.front());
+    return top && !top->is_conductor && top->alpha > 0.0 &&
+           top->scattering == Scattering::Multiple && top->distribution != Distribution::Blinn &&
+           top->ior_below > 1.0;
 }
 
 bool depends_on_wavelength(const Material& material) {
@@ -43,21 +46,37 @@ bool depends_on_wavelength(const Material& material) {
 }
 
 int deeper_lobe_count(const Material& material, Model model) {
-    if (model != Model::WeidlichWilkie)
-        return adding_lobe_count(material.stack);
+    if (model != Model::WeidlichWilkie) {
+        const int above = adding_lobe_count(material_at(material, reference_nm));
+        return material.stack.is_sheet()
+                   ? std::max(above,
+                              adding_lobe_count(material_at(material, reference_nm, Side::Below)))
+                   : above;
+    }
     return static_cast<int>(weidlich_wilkie_lobes(material_at(material, reference_nm)).size());
 }
 
 MaterialOptics::MaterialOptics(const Material& material, Model model, const WavelengthPlan& plan)
     : spectral_(depends_on_wavelength(material)), lanes_(static_cast<int>(plan.lanes.size())) {
     const int count = spectral_ ? plan.phases * lanes_ : 1;
-    optics_.resize(static_cast<std::size_t>(count));
+    (material.stack.is_sheet() ? sheets_.resize(static_cast<std::size_t>(count))
+                               : optics_.resize(static_cast<std::size_t>(count)));
     tbb::parallel_for(0, count, [&](int i) {
         const double wavelength =
             spectral_ ? plan.wavelength_nm(i % lanes_, i / lanes_) : reference_nm;
-        optics_[static_cast<std::size_t>(i)] =
-            closed_model(model)(material_at(material, wavelength));
+        const StackElements stack = material_at(material, wavelength);
+        const auto k = static_cast<std::size_t>(i);
+        if (is_sheet())
+            sheets_[k] = std::make_shared<SheetTransmission>(stack);
+        else
+            optics_[k] = closed_model(model)(stack);
     });
+}
+
+MaterialOptics MaterialOptics::seen_from(Side side) const {
+    MaterialOptics other = *this;
+    other.side_ = side;
+    return other;
 }
 
 } // namespace reradiant

@@ -30,7 +30,7 @@ public:
         record_.reflectance_image = record_.image_reflectance = NO_INDEX;
         record_.separable_albedo = record_.spread_value = NO_INDEX;
         record_.rank = 0;
-        if (substrate_.type == SubstrateType::Conductor) {
+        if (substrate_.type == SubstrateType::Conductor || substrate_.type == SubstrateType::None) {
             record_.diagonal = lanes_.append_lanes([](int, int) { return 0.0; });
             LaneOperator black;
             black.diagonal = Eigen::VectorXd::Zero(lanes_.lanes());

@@ -64,6 +64,7 @@ public:
 
     void append() {
         record_.walk = static_cast<std::uint32_t>(out_.walk_parts.size());
+        record_.dyes = record_.other_side = NO_INDEX;
         const std::size_t end = above_substrate(stack_).size();
         for (std::size_t e = 0; e < end; ++e) {
             if (const auto* interface = std::get_if<SurfaceValues>(&stack_[e]))
