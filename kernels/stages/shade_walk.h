@@ -60,7 +60,8 @@ static void shade_walk(const ShadeScene* scene, SurfacePoint point, MaterialReco
         step->state.bsdf_pdf = end.pdf;
         step->next = ray_from(step->hit, direction, INFINITY);
     }
-    const WalkVertexRecord kept = {walk.writer.chunk, walk.writer.count, walk.reference,
+    const WalkVertexRecord kept = {walk.writer.chunk, walk.writer.count,
+                                   walk.by_flight ? NO_INDEX : walk.reference,
                                    end.weight / survival};
     step->walk = kept;
 }
