@@ -95,6 +95,13 @@ FEATURE_BIT(walked_dyes, "no slab that is walked through holds a dye")
 #define FEATURE_WALKED_DYES 1
 #endif
 
+/// Lights are looked for through smooth sheets.
+#ifdef FEATURE_BIT
+FEATURE_BIT(passed_sheets, "no light is looked for through a smooth sheet")
+#elif !defined(FEATURE_PASSED_SHEETS)
+#define FEATURE_PASSED_SHEETS 1
+#endif
+
 /// Some substrate is Oren-Nayar.
 #ifdef FEATURE_BIT
 FEATURE_BIT(oren_nayar, "no substrate is Oren-Nayar")

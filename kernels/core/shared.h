@@ -196,9 +196,13 @@ typedef struct {
     shared_uint dyes;  ///< [channel][phase][node][lane], what light brings to dyes and substrate
                        ///< (gather_dyes.h) instead of `transmission` and the substrate's operator;
                        ///< NO_INDEX: no slab is dyed
-    shared_uint dye_coupling; ///< [phase][channel][excitation lane][channel][emission lane]
+    shared_uint dye_coupling; ///< [phase], within lanes [channel sent][channel taken][lane], then
+                              ///< of each term [channel][lane] what is taken, what is sent; or,
+                              ///< with no terms, [channel][lane] taken [channel][lane] sent
+    shared_uint dye_terms;    ///< 0: entry by entry
     shared_uint dye_channels;
     shared_uint dyes_shift_up; ///< 1: nothing is sent out below the wavelength that excites it
+    shared_uint is_passed;     ///< 1: shadow rays pass this smooth sheet straight on
     shared_uint other_side;    ///< of a sheet: the same as seen from below; NO_INDEX: it is opaque
     shared_uint dyes_far;      ///< of a sheet: `dyes` for directions on the other side
     shared_uint through_delta; ///< grey or spectral: weight of the direction straight on
@@ -206,7 +210,7 @@ typedef struct {
     shared_uint through_own, through_far; ///< grey or spectral: product form of what else goes
                                           ///< through, for directions on each side
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 148);
+ASSERT_SIZE(MaterialRecord, 156);
 
 /// Extinctions that distances in a scattering slab are sampled with (walk.h).
 #define WALK_REFERENCES 4
@@ -313,8 +317,19 @@ typedef struct {
     shared_uint vertex_count; ///< records written for this path
     shared_float bsdf_pdf;    ///< of the last direction; < 0: delta or camera
     shared_float throughput;  ///< bound over the lanes, for Russian roulette
+    shared_float passed;      ///< way since the last direction was chosen, through smooth sheets
+    shared_uint crossings;    ///< of these sheets
 } PathState;
-ASSERT_SIZE(PathState, 24);
+ASSERT_SIZE(PathState, 32);
+
+/// Sheets that a shadow ray may pass straight on.
+#define MOST_CROSSINGS 4
+/// A smooth sheet that a shadow ray passed; material NO_INDEX: there are no more.
+typedef struct {
+    shared_uint material;
+    shared_float cosine;
+} SheetCrossing;
+ASSERT_SIZE(SheetCrossing, 8);
 
 /// Weights of one of the two directions that a vertex gathers from. Each is a scalar times
 /// cos(theta_i) / pdf; the lanes' factors are applied in `gather`.

@@ -4,6 +4,7 @@
 #ifndef RERADIANT_GATHER_DYES_H
 #define RERADIANT_GATHER_DYES_H
 
+#include "kernels/stack/reradiation.h"
 #include "kernels/stages/gather_lanes.h"
 
 /// What reaches the channels of a vertex, [channel][vector].
@@ -37,28 +38,64 @@ static void reach_dyes(const GatherContext* context, uint dyes, TableStencil si,
             reached->lanes[a][c] += weight * radiance[c] * dye_channel(context, dyes, a, si, c);
 }
 
-/// Adds what leaves towards wo to the sum. Columns of the coupling are [channel a][lane i], their
-/// rows [channel b][lane o].
-static void leave_dyes(const GatherContext* context, TableStencil so, const DyeChannels* reached,
-                       Lanes* sum) {
-    const uint channels = context->material.dye_channels;
-    __global const float* coupling =
-        context->tables + context->material.dye_coupling +
-        (size_t)context->phase * (channels * LANES) * (channels * LANES);
-    DyeChannels sent;
-    clear_dyes(&sent);
+/// What a coupling between lanes entry by entry sends.
+static void couple_dyes_densely(__global const float* coupling, uint channels, uint shifts_up,
+                                const DyeChannels* reached, DyeChannels* sent) {
     for (uint a = 0u; a < channels; ++a) {
         for (uint i = 0u; i < LANES; ++i) {
             const float excitation = ((const float*)reached->lanes[a])[i];
             if (excitation == 0.0f)
                 continue;
             __global const float* column = coupling + (size_t)(a * LANES + i) * (channels * LANES);
-            const uint first = context->material.dyes_shift_up ? i / WIDTH : 0u;
+            const uint first = shifts_up ? i / WIDTH : 0u;
             for (uint b = 0u; b < channels; ++b)
                 for (uint c = first; c < CHUNKS; ++c)
-                    sent.lanes[b][c] += vload16(c, column + b * LANES) * excitation;
+                    sent->lanes[b][c] += vload16(c, column + b * LANES) * excitation;
         }
     }
+}
+
+/// What a coupling within lanes and by terms of a product sends: a running sum for each term.
+static void couple_dyes(__global const float* coupling, uint channels, uint terms,
+                        const DyeChannels* reached, DyeChannels* sent) {
+    for (uint b = 0u; b < channels; ++b)
+        for (uint a = 0u; a < channels; ++a)
+            for (uint c = 0u; c < CHUNKS; ++c)
+                sent->lanes[b][c] +=
+                    vload16(c, coupling + (b * channels + a) * LANES) * reached->lanes[a][c];
+    for (uint k = 0u; k < terms; ++k) {
+        __global const float* taken = coupling + (channels * channels + 2u * k * channels) * LANES;
+        __global const float* emission = taken + channels * LANES;
+        float carried = 0.0f;
+        for (uint c = 0u; c < CHUNKS; ++c) {
+            Lanes here = (Lanes)(0.0f);
+            for (uint a = 0u; a < channels; ++a)
+                here += vload16(c, taken + a * LANES) * reached->lanes[a][c];
+            float total;
+            const Lanes before = reradiation_exclusive_sum(here, &total) + carried;
+            for (uint b = 0u; b < channels; ++b)
+                sent->lanes[b][c] += vload16(c, emission + b * LANES) * before;
+            carried += total;
+        }
+    }
+}
+
+/// Adds what leaves towards wo to the sum.
+static void leave_dyes(const GatherContext* context, TableStencil so, const DyeChannels* reached,
+                       Lanes* sum) {
+    const MaterialRecord m = context->material;
+    const uint channels = m.dye_channels;
+    __global const float* couplings = context->tables + m.dye_coupling;
+    DyeChannels sent;
+    clear_dyes(&sent);
+    if (m.dye_terms > 0u)
+        couple_dyes(couplings + (size_t)context->phase *
+                                    ((channels * channels + 2u * m.dye_terms * channels) * LANES),
+                    channels, m.dye_terms, reached, &sent);
+    else
+        couple_dyes_densely(couplings + (size_t)context->phase *
+                                            ((size_t)(channels * LANES) * (channels * LANES)),
+                            channels, m.dyes_shift_up, reached, &sent);
     for (uint c = 0u; c < PATH_CHUNKS; ++c) {
         Lanes left = (Lanes)(0.0f);
         for (uint b = 0u; b < channels; ++b)

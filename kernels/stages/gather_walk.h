@@ -143,7 +143,7 @@ static void gather_walk(const GatherScene* scene, const GatherContext* context,
     const float weight = vertex->has_next ? walk.weight : 0.0f;
     for (uint c = 0u; c < PATH_CHUNKS; ++c) {
         replay.radiance[c] = weight > 0.0f ? weight * radiance[c] : (Lanes)(0.0f);
-        light[c] = lit ? emission(scene, context, vertex->light, c) : (Lanes)(0.0f);
+        light[c] = lit ? light_found(scene, context, vertex->light, slot, c) : (Lanes)(0.0f);
         replay.seen[c] = light[c];
     }
 #if WALK_RE_EMITS

@@ -93,6 +93,7 @@ private:
         plan_.counts.lobes *= 2;
         plan_.counts.floats *= 2;
         const bool is_rough = !material_.stack.is_smooth();
+        plan_.is_straight = !is_rough;
         plan_.counts.floats += row_;  // a substrate that sends nothing back, for the other side
         plan_.counts.floats += nodes; // straight on, or the amplitude of a lobe
         if (is_rough || material_.stack.scatters())
@@ -303,8 +304,11 @@ private:
         plan_.features.dyes = true;
         plan_.features.dye_channels = plan_.dyes->channels;
         const std::uint64_t sides = material_.stack.is_sheet() ? 2 : 1;
-        plan_.counts.floats +=
-            sides * channels * spectral_nodes() + channels * channels * lanes_ * row_;
+        plan_.counts.floats += sides * channels * spectral_nodes() +
+                               channels *
+                                   (channels * (plan_.dyes->terms > 0 ? 1 : lanes_) +
+                                    2 * static_cast<std::uint64_t>(plan_.dyes->terms)) *
+                                   row_;
     }
 
     /// True where light is spread on its way to the substrate at the middle of the spectrum, for

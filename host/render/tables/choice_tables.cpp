@@ -131,8 +131,8 @@ DiffuseShare dyed_share(const ChannelOperator& dyes, Side from, Side to) {
             for (int node = 0; node + 1 < TABLE_NODES; ++node) { // trapezia in c^2
                 const double low = node_cosine(node), high = node_cosine(node + 1);
                 const Eigen::Index row = node_row(node, from);
-                entering(a * lanes + lane) += 0.5 * (high - low) * (high + low) *
-                                              (reached(row, a) + reached(row + 1, a));
+                entering(a * lanes + lane) +=
+                    0.5 * (high - low) * (high + low) * (reached(row, a) + reached(row + 1, a));
             }
     }
     const Eigen::VectorXd sent = std::numbers::pi * (dyes.coupling * entering);

@@ -1,7 +1,7 @@
 #include "host/render/tables/dyed_operator.h"
 
-#include "host/render/tables/dyes_on_lanes.h"
 #include "host/render/tables/lane_tables.h"
+#include "host/render/tables/substrate_operator.h"
 #include "host/scene/model/closed_model.h"
 #include "host/spectral/matrix/singular_values.h"
 #include "kernels/core/shared.h"
@@ -20,6 +20,10 @@ namespace {
 constexpr int most_channels = 4;
 /// Share of what reaches the cells that channels may leave out.
 constexpr double channel_tolerance = 1e-3;
+/// Most terms that a coupling is applied by; beyond that entry by entry costs no more.
+constexpr int most_terms = 8;
+/// What of the light between lanes the terms may leave out.
+constexpr double factor_tolerance = 5e-4;
 
 /// What reaches the sources at the nodes of the tables: (TABLE_NODES, sources), twice as many rows
 /// for a sheet.
@@ -104,10 +108,28 @@ public:
             result.shifts_up =
                 result.shifts_up && stacks_[static_cast<std::size_t>(phase)]->shifts_up();
         }
+        if (result.shifts_up)
+            factorise(result);
         return result;
     }
 
 private:
+    /// Factors of all phases, or of none.
+    static void factorise(DyedOperator& dyes) {
+        tbb::parallel_for(std::size_t{0}, dyes.phases.size(), [&](std::size_t phase) {
+            ChannelOperator& own = dyes.phases[phase];
+            own.factors =
+                factorise_channels(own.coupling, static_cast<Eigen::Index>(own.reached.size()),
+                                   most_terms, factor_tolerance);
+        });
+        for (const ChannelOperator& phase : dyes.phases) {
+            dyes.terms = std::max(dyes.terms, static_cast<int>(phase.factors.terms()));
+            dyes.factor_error = std::max(dyes.factor_error, phase.factors.error);
+        }
+        if (dyes.factor_error > factor_tolerance)
+            dyes.terms = 0;
+    }
+
     DyedStack stack_at_phase(int phase) const {
         DyedStack stack;
         for (int lane = 0; lane < static_cast<int>(plan_.lanes.size()); ++lane)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/layers/sources/emitting_stack.h"
+#include "host/render/tables/masked_factors.h"
 #include "host/render/tables/substrate_operator.h"
 #include "reradiant/scene.h"
 #include "reradiant/wavelength_plan.h"
@@ -25,6 +26,7 @@ struct ChannelOperator {
     std::vector<Eigen::MatrixXd> reached;
     /// 1/sr, (channels * lanes, channels * lanes), lanes run fastest; rows = emission.
     Eigen::MatrixXd coupling;
+    ChannelFactors factors; ///< of the coupling, without terms where it is applied as it is
 };
 
 /// Row of a node's direction on a side in ChannelOperator::reached.
@@ -37,6 +39,8 @@ struct DyedOperator {
     double depth_error = 0.0;   ///< EmittingStack::error, the largest
     double channel_error = 0.0; ///< share of what reaches the cells that no channel holds
     bool shifts_up = true;      ///< nothing is sent out below what excites it
+    int terms = 0;              ///< most terms of a phase; 0: the coupling is applied as it is
+    double factor_error = 0.0;  ///< what the terms leave out, the largest
     std::vector<ChannelOperator> phases;
 
     /// What reaches a channel at a node's direction on a side; 0 for a channel that a lane lacks.

@@ -223,6 +223,7 @@ private:
         record_.dye_coupling = above.dye_coupling;
         record_.dye_channels = above.dye_channels;
         record_.dyes_shift_up = above.dyes_shift_up;
+        record_.dye_terms = above.dye_terms;
         record_.through_delta = above.through_delta;
         record_.through_lobe = above.through_lobe;
         record_.through_own = above.through_far;
@@ -258,14 +259,36 @@ private:
     void append_dyes(const DyedOperator& dyes) {
         record_.dye_channels = static_cast<std::uint32_t>(dyes.channels);
         record_.dyes_shift_up = dyes.shifts_up ? 1u : 0u;
+        record_.dye_terms = static_cast<std::uint32_t>(dyes.terms);
         record_.dyes = append_channels(dyes, Side::Above);
         if (optics_.is_sheet())
             record_.dyes_far = append_channels(dyes, Side::Below);
         append_dye_coupling(dyes);
         out_.notes.push_back(fmt::format(
             "material '{}': dyes in {} depth cells (error {:.1g}), {} functions of the direction "
-            "(error {:.1g})",
-            material_.name, dyes.cells, dyes.depth_error, dyes.channels, dyes.channel_error));
+            "(error {:.1g}), {}",
+            material_.name, dyes.cells, dyes.depth_error, dyes.channels, dyes.channel_error,
+            dyes.terms > 0 ? fmt::format("{} products of an emission and an excitation (error "
+                                         "{:.1g})",
+                                         dyes.terms, dyes.factor_error)
+                           : std::string("entry by entry")));
+    }
+
+    /// Rows of lanes; terms that a phase does not need are 0.
+    void append_dye_factors(const ChannelFactors& factors, int channels, int terms) {
+        const int lanes = lanes_.lanes();
+        const auto append_row = [&](const auto& value) {
+            for (int lane = 0; lane < lanes_.padded_lanes(); ++lane)
+                lanes_.append(lane < lanes ? value(lane) : 0.0);
+        };
+        for (Eigen::Index row = 0; row < factors.within.rows(); ++row)
+            append_row([&](int lane) { return factors.within(row, lane); });
+        for (int term = 0; term < terms; ++term)
+            for (const Eigen::MatrixXd* own : {&factors.taken, &factors.sent})
+                for (int channel = 0; channel < channels; ++channel)
+                    append_row([&](int lane) {
+                        return term < own->cols() ? (*own)(channel * lanes + lane, term) : 0.0;
+                    });
     }
 
     std::uint32_t append_channels(const DyedOperator& dyes, Side side) {
@@ -280,6 +303,11 @@ private:
     void append_dye_coupling(const DyedOperator& dyes) {
         record_.dye_coupling = lanes_.here();
         const int lanes = lanes_.lanes(), padded = lanes_.padded_lanes();
+        if (dyes.terms > 0) {
+            for (const ChannelOperator& phase : dyes.phases)
+                append_dye_factors(phase.factors, dyes.channels, dyes.terms);
+            return;
+        }
         for (const ChannelOperator& phase : dyes.phases)
             for (int a = 0; a < dyes.channels; ++a)
                 for (int i = 0; i < padded; ++i)

@@ -3,7 +3,7 @@
 #include "host/layers/rough/facet_reflectance.h"
 #include "host/layers/walk/walk_surface.h"
 #include "host/render/plan/material_plan.h"
-#include "host/render/tables/dyes_on_lanes.h"
+#include "host/render/tables/substrate_operator.h"
 #include "host/render/tables/substrate_tables.h"
 #include "host/scene/model/closed_model.h"
 

@@ -151,13 +151,6 @@ std::vector<double> polar_angles() {
 
 } // namespace
 
-void refuse_measured_sheet(const Material& material, const SourcePosition& at) {
-    if (material.stack.is_sheet())
-        throw_input_error(at,
-                          "a study measures what is reflected, and a sheet transmits light as well",
-                          "leave [measure] out, or use `reradiant measure` for what a sheet does");
-}
-
 CellMeasurement measure_cell(const Material& material, const StudyMeasuring& measuring,
                              const std::vector<NamedIlluminant>& illuminants) {
     refuse_measured_sheet(material, material.position);

@@ -50,9 +50,6 @@ struct NamedIlluminant {
     Spectrum spectrum;
 };
 
-/// Input Error at `at` for a sheet, which a study does not measure.
-void refuse_measured_sheet(const Material& material, const SourcePosition& at);
-
 /// Measures a material as a study asks. Input Error as measure_material has it.
 CellMeasurement measure_cell(const Material& material, const StudyMeasuring& measuring,
                              const std::vector<NamedIlluminant>& illuminants);

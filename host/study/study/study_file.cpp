@@ -2,7 +2,6 @@
 
 #include "host/scene/document/load_state.h"
 #include "host/scene/toml/scene_table.h"
-#include "host/study/study/cell_measurement.h"
 #include "host/study/study/sample_scene.h"
 #include "host/study/study/sweep_apply.h"
 #include "host/study/study/sweep_reader.h"
@@ -216,6 +215,13 @@ std::vector<std::size_t> Study::cell_values(std::size_t cell) const {
         cell /= sweeps[k].values.size();
     }
     return indices;
+}
+
+void refuse_measured_sheet(const Material& material, const SourcePosition& at) {
+    if (material.stack.is_sheet())
+        throw_input_error(at,
+                          "a study measures what is reflected, and a sheet transmits light as well",
+                          "leave [measure] out, or use `reradiant measure` for what a sheet does");
 }
 
 Study load_study(const fs::path& file) {

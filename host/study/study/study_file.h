@@ -79,4 +79,7 @@ struct Study {
 /// scene does not have, angles that are swept and given, too many cells.
 Study load_study(const std::filesystem::path& file);
 
+/// Input Error at `at` for a sheet, which a study does not measure.
+void refuse_measured_sheet(const Material& material, const SourcePosition& at);
+
 } // namespace reradiant
