@@ -234,8 +234,11 @@ typedef struct {
     shared_float references[WALK_REFERENCES];
     shared_uint flakes;    ///< at the slab's end: index of their part in the stack; NO_INDEX: none
     shared_float coverage; ///< of the flakes, share of the area
+    shared_uint emission;  ///< of dyes: [phase][lane i][lane o], what they send out in o of a unit
+                           ///< of fluence in i, as optical depths at normal passage; NO_INDEX: none
+    shared_float emission_share; ///< of directions from events in the slab that are drawn for dyes
 } WalkPartRecord;
-ASSERT_SIZE(WalkPartRecord, 76);
+ASSERT_SIZE(WalkPartRecord, 84);
 
 /// One step of a recorded walk: a kind in the upper 8 bits, an index below, and a number.
 typedef struct {
@@ -257,7 +260,8 @@ ASSERT_SIZE(WalkChunk, 128);
 typedef struct {
     shared_uint chunk;     ///< the last one, or NO_INDEX
     shared_uint count;     ///< events in it; those before are full
-    shared_uint reference; ///< which of WALK_REFERENCES distances were sampled with
+    shared_uint reference; ///< which of WALK_REFERENCES distances were sampled with; NO_INDEX: the
+                           ///< weights of the events say
     shared_float weight;   ///< of the radiance along `next`
 } WalkVertexRecord;
 ASSERT_SIZE(WalkVertexRecord, 16);

@@ -64,7 +64,8 @@ static void shade_walk(const ShadeScene* scene, SurfacePoint point, MaterialReco
 #endif
         step->next = ray_from(step->hit, direction, INFINITY);
     }
-    const WalkVertexRecord kept = {walk.writer.chunk, walk.writer.count, walk.reference,
+    const WalkVertexRecord kept = {walk.writer.chunk, walk.writer.count,
+                                   walk.by_flight ? NO_INDEX : walk.reference,
                                    end.weight / survival};
     step->walk = kept;
 }

@@ -53,7 +53,7 @@ public:
         else
             plan_closed_model();
         plan_substrate();
-        if (material_.stack.is_dyed())
+        if (material_.stack.is_dyed() && plan_.choice.model != Model::Walk)
             plan_dyes();
         return std::move(plan_);
     }
@@ -231,9 +231,16 @@ private:
         for (int phase = 0; phase < wavelengths_.phases; ++phase)
             for (int lane = 0; lane < static_cast<int>(wavelengths_.lanes.size()); ++lane)
                 append_depths(material_at(material_, wavelengths_.wavelength_nm(lane, phase)));
-        for (const SlabDepths& slab : plan_.slabs) {
-            plan_.features.scattering_slabs |= slab.scatters();
-            plan_.counts.floats += (slab.scatters() ? 2 : slab.absorbs() ? 1 : 0) * row_;
+        for (std::size_t k = 0; k < plan_.slabs.size(); ++k) {
+            const SlabDepths& slab = plan_.slabs[k];
+            const bool is_dyed = material_.stack.layers[k].is_dyed();
+            plan_.features.walked_dyes |= is_dyed;
+            plan_.features.scattering_slabs |= slab.scatters() || is_dyed;
+            plan_.counts.floats += (slab.scatters()  ? 2
+                                    : slab.absorbs() ? 1
+                                                     : 0) *
+                                       row_ +
+                                   (is_dyed ? lanes_ * row_ : 0);
         }
     }
 
