@@ -385,10 +385,12 @@ LayeredBsdf::Choice LayeredBsdf::choice(const AirDirection& from) const {
 
 namespace {
 
-/// A direction found above, as it lies seen from w's side, on that side or on the other one.
-Vec3 on_side_of(const Vec3& w, const Vec3& found, bool same) {
+/// A direction found above, as it lies seen from w's side, on that side or on the other one. Of a
+/// sheet, one that was found below lies in the surface: nothing goes on there.
+Vec3 on_side_of(const Vec3& w, const Vec3& found, bool same, bool is_sheet) {
     const bool above = (w.z > 0.0) == same;
-    return kernels::vec3(found.x, found.y, above ? found.z : -found.z);
+    const double z = is_sheet ? std::max(found.z, 0.0) : found.z;
+    return kernels::vec3(found.x, found.y, above ? z : -z);
 }
 
 } // namespace
@@ -407,14 +409,15 @@ LayeredBsdf::Sample LayeredBsdf::sample(const Vec3& w, const std::array<double, 
                            kernels::layer_stack_sample_lobe(kernel_distribution(lobe.distribution),
                                                             sampling_width(lobe, own.z), own,
                                                             random[1], random[2]),
-                           true);
+                           true, is_sheet());
             return {other, pdf(w, other), false};
         }
     }
     bound += chosen.cosine;
     if (is_sheet() && !(random[0] < bound))
         return sample_far(w, chosen, random[0] - bound, random);
-    const Vec3 other = on_side_of(w, kernels::sampling_cosine(random[1], random[2]), true);
+    const Vec3 other =
+        on_side_of(w, kernels::sampling_cosine(random[1], random[2]), true, is_sheet());
     return {other, pdf(w, other), false};
 }
 
@@ -431,7 +434,7 @@ LayeredBsdf::Sample LayeredBsdf::sample_far(const Vec3& w, const Choice& chosen,
                                                  sampling_width(*lobe, own.z), own, random[1],
                                                  random[2]);
     }
-    const Vec3 other = on_side_of(w, found, false);
+    const Vec3 other = on_side_of(w, found, false, true);
     return {other, pdf(w, other), false};
 }
 

@@ -50,6 +50,10 @@ EmittingStack::EmittingStack(DyedStack stack) : stack_(std::move(stack)) {
     levels_.erase(levels_.begin(), levels_.end() - 2);
 }
 
+EmittingStack::EmittingStack(DyedStack stack, int cells_per_octave) : stack_(std::move(stack)) {
+    levels_ = {make_level(cells_per_octave / 2), make_level(cells_per_octave)};
+}
+
 EmittingStack::Level EmittingStack::make_level(int cells_per_octave) const {
     Level level{cells_of(stack_, cells_per_octave), nullptr, nullptr};
     std::vector<std::shared_ptr<const SourceTransport>> transports(stack_.by_band.size());
@@ -133,6 +137,13 @@ Eigen::MatrixXd EmittingStack::albedo(const AirDirection& from, Side to, Part pa
 Eigen::MatrixXd EmittingStack::guided(const AirDirection& from) const {
     return extrapolated(*sent(from, Part::All),
                         [](const SourceTransport& transport) { return transport.guided(); });
+}
+
+int EmittingStack::cells_per_octave() const {
+    int most = 2;
+    for (const DepthCells& cells : levels_.back().cells)
+        most = std::max(most, cells.count() > 0 ? cells.cells_per_octave : 0);
+    return most;
 }
 
 int EmittingStack::cells() const {

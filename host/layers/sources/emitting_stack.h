@@ -40,6 +40,8 @@ public:
     static constexpr double tolerance = 1e-4;
 
     explicit EmittingStack(DyedStack stack);
+    /// Takes so many cells as a stack much like this one needed, without asking for the error.
+    EmittingStack(DyedStack stack, int cells_per_octave);
 
     Eigen::Index bands() const { return static_cast<Eigen::Index>(stack_.by_band.size()); }
     /// Returns the BSDF of this light, 1/sr without the cosine: (bands, bands), rows = emission.
@@ -49,8 +51,9 @@ public:
     /// Returns the share that is guided for ever by total reflection, likewise.
     Eigen::MatrixXd guided(const AirDirection& from) const;
 
-    /// Depth cells of all slabs together, the finest.
+    /// Depth cells of all slabs together, the finest, and those of each octave (DepthCells).
     int cells() const;
+    int cells_per_octave() const;
     /// Change of the directional-hemispherical shares with the last halving of the cells, relative
     /// to the largest: a bound of their error.
     double error() const { return error_; }

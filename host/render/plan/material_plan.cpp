@@ -194,10 +194,15 @@ private:
         plan_.counts.floats += plan_.ior_ratios * row_ + plan_.tabulated.size() * spectral_nodes();
     }
 
+    bool has_facet_lobe_on_a_side() const {
+        return has_facet_lobe(stack_) ||
+               (material_.stack.is_sheet() && has_facet_lobe(upside_down(stack_)));
+    }
+
     void plan_lobes() {
         plan_.counts.lobes = static_cast<std::uint64_t>(plan_.features.lobes);
         plan_.features.deeper_lobes = plan_.counts.lobes > 0;
-        if (plan_.choice.model == Model::Adding && has_facet_lobe(stack_))
+        if (plan_.choice.model == Model::Adding && has_facet_lobe_on_a_side())
             plan_.counts.floats += SHAPE_TABLE_SIZE;
         if (plan_.choice.model == Model::WeidlichWilkie)
             for (const DeeperLobe& lobe : weidlich_wilkie_lobes(stack_))

@@ -93,7 +93,10 @@ public:
         DyedOperator result;
         std::vector<double> left_out(most_channels, 0.0);
         for (int phase = 0; phase < plan_.phases; ++phase) {
-            stacks_.push_back(std::make_unique<EmittingStack>(stack_at_phase(phase)));
+            stacks_.push_back(
+                stacks_.empty() ? std::make_unique<EmittingStack>(stack_at_phase(phase))
+                                : std::make_unique<EmittingStack>(
+                                      stack_at_phase(phase), stacks_.front()->cells_per_octave()));
             result.cells = std::max(result.cells, stacks_.back()->cells());
             result.depth_error = std::max(result.depth_error, stacks_.back()->error());
             add_reached(left_out);
