@@ -52,29 +52,14 @@ AngularGrid make_angular_grid(double ior, double critical, int cells) {
     return grid;
 }
 
-namespace {
-
-/// Least cosine of light from the air in a medium. A grid that is split there fits both sides
-/// apart.
-double lowest_from_air(const AngularGrid& grid) {
-    const double n = grid.ior;
-    const double lowest = n > 1.0 ? std::sqrt((n - 1.0) * (n + 1.0)) / n : 0.0;
-    return std::fabs(lowest - grid.critical) < 1e-6 ? 0.0 : lowest;
-}
-
-} // namespace
-
 CellFit::CellFit(const AngularGrid& grid)
-    : lowest_(lowest_from_air(grid)), critical_(grid.critical > lowest_ ? grid.critical : 0.0),
-      terms_(cell_terms(grid)) {
+    : critical_(grid.critical), terms_(grid.critical > 0.0 ? 11 : 15) {
     const int sets = critical_ > 0.0 ? 2 : 1;
     Eigen::MatrixXd means = Eigen::MatrixXd::Zero(grid.cells(), sets * terms_);
     const Quadrature& rule = gauss_legendre(8);
     for (int j = 0; j < grid.cells(); ++j) {
         const double low = grid.edges[static_cast<std::size_t>(j)];
         const double width = grid.edges[static_cast<std::size_t>(j) + 1] - low;
-        if (low < lowest_)
-            continue; // its row stays 0: nothing follows from it
         double total = 0.0;
         for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
             const double c = low + width * rule.nodes[i];
@@ -87,29 +72,11 @@ CellFit::CellFit(const AngularGrid& grid)
         means.colPivHouseholderQr().solve(Eigen::MatrixXd::Identity(grid.cells(), grid.cells()));
 }
 
-/// Terms of a set: as many as grids of all cells bear, or half of the cells that count.
-int CellFit::cell_terms(const AngularGrid& grid) const {
-    const int most = critical_ > 0.0 ? 11 : 15;
-    if (lowest_ == 0.0)
-        return most;
-    const auto above = [&](double c) {
-        return static_cast<int>(grid.edges.end() -
-                                std::lower_bound(grid.edges.begin(), grid.edges.end(), c)) -
-               1;
-    };
-    const int fewest = critical_ > 0.0
-                           ? std::min(above(lowest_) - above(critical_), above(critical_))
-                           : above(lowest_);
-    return std::clamp(fewest / 2, 1, most);
-}
-
 Eigen::VectorXd CellFit::basis(double cosine) const {
-    const double c = std::clamp(cosine, lowest_, 1.0);
-    const double from = critical_ > 0.0 ? critical_ : lowest_;
-    const bool upper = c >= from;
-    const double x =
-        upper ? std::sqrt((c - from) / (1.0 - from))
-              : std::asin((c - lowest_) / (critical_ - lowest_)) / (0.5 * std::numbers::pi);
+    const double c = std::clamp(cosine, 0.0, 1.0);
+    const bool upper = c >= critical_;
+    const double x = upper ? std::sqrt((c - critical_) / (1.0 - critical_))
+                           : std::asin(c / critical_) / (0.5 * std::numbers::pi);
     Eigen::VectorXd values = Eigen::VectorXd::Zero(critical_ > 0.0 ? 2 * terms_ : terms_);
     const int first = critical_ > 0.0 && upper ? terms_ : 0;
     // Chebyshev polynomials on [-1, 1]: well conditioned

@@ -30,9 +30,7 @@ AngularGrid make_angular_grid(double ior, double critical, int cells);
 
 /// Least-squares fit of a smooth function of the cosine to its means over the cells of a grid:
 /// polynomials of sqrt(c) (transmission falls as c at grazing), a set on each side of the
-/// critical cosine. Constants are reproduced exactly. The fit is for directions that light from the
-/// air comes in: beyond them, where n sin > 1, it is reflected totally on its way up, functions
-/// jump, and their cells do not count.
+/// critical cosine. Constants are reproduced exactly.
 class CellFit {
 public:
     explicit CellFit(const AngularGrid& grid);
@@ -45,10 +43,7 @@ public:
 private:
     Eigen::VectorXd basis(double cosine) const;
 
-    int cell_terms(const AngularGrid& grid) const;
-
-    double lowest_;   ///< cosine that light from the air has at least; 0: every cell counts
-    double critical_; ///< that splits the rest; 0: none does
+    double critical_;
     int terms_;
     Eigen::MatrixXd solve_; ///< (coefficients, cells)
 };

@@ -21,9 +21,9 @@ namespace {
 /// Fits are the same for all stacks with the same upper side of the first scatterer.
 std::shared_ptr<const CellFit> fit_of(const AngularGrid& grid) {
     static std::mutex mutex;
-    static std::map<std::pair<double, double>, std::shared_ptr<const CellFit>> known;
+    static std::map<double, std::shared_ptr<const CellFit>> known;
     const std::scoped_lock lock(mutex);
-    auto& fit = known[{grid.critical, grid.ior}];
+    auto& fit = known[grid.critical];
     if (!fit)
         fit = std::make_shared<CellFit>(grid);
     return fit;
