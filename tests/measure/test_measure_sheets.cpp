@@ -103,6 +103,34 @@ TEST(MeasureSheets, DirectionalRowsSeeTheFarSide) {
         EXPECT_GT(value, 0.0) << angles.first << " " << angles.second;
 }
 
+TEST(MeasureSheets, Case60RowsOfADyeOfConcentrationZeroAreThoseOfNone) {
+    Layer dyed = dyed_layer(1.5, {1, .4, 0}, {0, 0, 0, .5, 0, 0, .2, .7, 0}), plain = dyed;
+    dyed.dyes[0].concentration = 0.0;
+    plain.dyes.clear();
+    for (const bool is_sheet : {true, false})
+        for (const bool hemispherical : {true, false}) {
+            const auto rows_of = [&](const Layer& layer) {
+                Material material;
+                material.stack = {{layer}};
+                if (is_sheet)
+                    material = sheet_of({{layer}, LowerFace{}});
+                MeasureRequest request;
+                request.hemispherical = hemispherical;
+                request.theta_i_deg = {0, 40};
+                request.theta_o_deg = {20};
+                return measure_material(material, request);
+            };
+            const Measurement with = rows_of(dyed), without = rows_of(plain);
+            ASSERT_EQ(with.rows.size(), without.rows.size());
+            EXPECT_EQ(with.bands, without.bands);
+            EXPECT_EQ(with.notes, without.notes);
+            for (std::size_t k = 0; k < with.rows.size(); ++k) {
+                EXPECT_EQ(with.rows[k].value, without.rows[k].value);
+                EXPECT_EQ(with.rows[k].part, without.rows[k].part);
+            }
+        }
+}
+
 TEST(MeasureSheets, AnglesAreThoseOfTheMaterialsSides) {
     const auto refusal = [](const Material& material, double theta_i, double theta_o) {
         MeasureRequest request = by_walk({theta_i}, false);

@@ -10,7 +10,16 @@ namespace reradiant {
 
 namespace {
 
-/// Largest extinction depth of every slab over all bands; 0 for one without dyes.
+/// Cosine in a slab of the most grazing light from the air, but for light so close to grazing that
+/// hardly any comes.
+double most_grazing(const SlabValues& slab) {
+    constexpr double least = 0.01;
+    const double n = slab.ior;
+    return n > 1.0 ? std::max(std::sqrt((n - 1.0) * (n + 1.0)) / n, least) : least;
+}
+
+/// Largest extinction depth of every slab over all bands, along the path of the most grazing light;
+/// 0 for one without dyes.
 std::vector<double> depths_of_dyed(const DyedStack& stack) {
     std::vector<double> depths(stack.slabs.size(), 0.0);
     for (const StackElements& elements : stack.by_band) {
@@ -18,7 +27,8 @@ std::vector<double> depths_of_dyed(const DyedStack& stack) {
         for (const StackElement& element : elements)
             if (const auto* slab = std::get_if<SlabValues>(&element)) {
                 if (stack.slabs[slab_index].size() > 0)
-                    depths[slab_index] = std::max(depths[slab_index], slab->depth());
+                    depths[slab_index] =
+                        std::max(depths[slab_index], slab->depth() / most_grazing(*slab));
                 ++slab_index;
             }
     }

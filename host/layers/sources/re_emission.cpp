@@ -1,5 +1,6 @@
 #include "host/layers/sources/re_emission.h"
 
+#include "host/layers/sources/fixed_point.h"
 #include "host/spectral/matrix/linear_systems.h"
 #include "reradiant/error.h"
 
@@ -14,6 +15,16 @@ bool is_lower(const Eigen::MatrixXd& matrix) {
         if ((matrix.col(i).head(i).array() != 0.0).any())
             return false;
     return true;
+}
+
+/// Input Error for what light alone cannot be: (I - T)^-1 of a positive T whose spectral radius is
+/// not below 1 has entries below zero.
+void check_series(const Eigen::MatrixXd& sum) {
+    constexpr double rounding = 1e-9;
+    if (sum.allFinite() && sum.minCoeff() >= -rounding * sum.maxCoeff())
+        return;
+    throw_input_error({}, "what the dyes send out excites them without end",
+                      "their shares and the re-radiation matrix must send out less than they take");
 }
 
 } // namespace
@@ -45,6 +56,7 @@ ReEmission::ReEmission(std::vector<std::shared_ptr<const SourceTransport>> by_ba
             const auto one = Eigen::MatrixXd::Identity(n, n);
             own_series_.back() =
                 left_quotient(one - within.asDiagonal() * at(band).exchange(), one);
+            check_series(own_series_.back());
         }
     }
 }
@@ -70,30 +82,42 @@ Eigen::VectorXd ReEmission::driven(Eigen::Index band, const Eigen::MatrixXd& rea
     return sent;
 }
 
-Eigen::MatrixXd ReEmission::sent(Eigen::Index excitation, const Eigen::VectorXd& reached) const {
-    constexpr int most_passes = 10000;
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(reached.size(), bands()), sent = all;
-    all.col(excitation) = reached;
-    for (int pass = 0; pass < most_passes; ++pass) {
-        double change = 0.0;
-        for (Eigen::Index band = stokes_only_ ? excitation : 0; band < bands(); ++band) {
-            // what reaches the sources in this band by their own doing is in its own series
-            all.col(band).setZero();
-            if (band == excitation)
-                all.col(band) = reached;
-            Eigen::VectorXd next = driven(band, all);
-            const Eigen::MatrixXd& series = own_series_[static_cast<std::size_t>(band)];
-            if (series.size() > 0)
-                next = series * next;
-            change = std::max(change, (next - sent.col(band)).cwiseAbs().maxCoeff());
-            sent.col(band) = next;
-            all.col(band).noalias() += at(band).exchange() * next;
-        }
-        if (stokes_only_ || change <= 1e-15 * sent.cwiseAbs().maxCoeff())
-            return sent;
+/// What is sent out band after band, each with what the bands before it sent out now, and with what
+/// the others sent out before.
+Eigen::MatrixXd ReEmission::pass(Eigen::Index excitation, const Eigen::VectorXd& reached,
+                                 Eigen::MatrixXd sent) const {
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(reached.size(), bands());
+    const Eigen::Index first = stokes_only_ ? excitation : 0;
+    for (Eigen::Index band = first; band < bands() && !stokes_only_; ++band)
+        all.col(band).noalias() = at(band).exchange() * sent.col(band);
+    all.col(excitation) += reached;
+    for (Eigen::Index band = first; band < bands(); ++band) {
+        // what reaches the sources in this band by their own doing is in its own series
+        all.col(band).setZero();
+        if (band == excitation)
+            all.col(band) = reached;
+        sent.col(band) = driven(band, all);
+        const Eigen::MatrixXd& series = own_series_[static_cast<std::size_t>(band)];
+        if (series.size() > 0)
+            sent.col(band) = series * sent.col(band);
+        all.col(band).noalias() += at(band).exchange() * sent.col(band);
     }
-    throw_input_error({}, "what the dyes send out excites them without end",
-                      "their shares and the re-radiation matrix must send out less than they take");
+    return sent;
+}
+
+Eigen::MatrixXd ReEmission::sent(Eigen::Index excitation, const Eigen::VectorXd& reached) const {
+    const Eigen::Index n = reached.size();
+    const Eigen::MatrixXd once = pass(excitation, reached, Eigen::MatrixXd::Zero(n, bands()));
+    if (stokes_only_)
+        return once;
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
+    const Eigen::VectorXd whole = fixed_point(once.reshaped(), [&](const Eigen::VectorXd& sent) {
+        return Eigen::VectorXd(pass(excitation, none, sent.reshaped(n, bands())).reshaped());
+    });
+    const Eigen::MatrixXd all = whole.reshaped(n, bands());
+    if (reached.minCoeff() >= 0.0)
+        check_series(all);
+    return all;
 }
 
 } // namespace reradiant

@@ -15,8 +15,8 @@ namespace reradiant {
 /// (SourceTransport). What reaches a source it sends out again, at the same or other wavelengths:
 /// J(lo) = sum over li of S(lo, li) x(li), with S the emission of a cell (host/layers/stack/
 /// slab_emission.h, times its share of the thickness) or the substrate's matrix. Where light goes
-/// to longer wavelengths only, one pass over the bands solves it; else passes are repeated until
-/// nothing changes.
+/// to longer wavelengths only, one pass over the bands solves it; else the equations of all bands
+/// are solved together, with the pass as preconditioner.
 class ReEmission {
 public:
     /// `by_band` holds one transport for each band, all with the same sources; `slabs` what each
@@ -33,7 +33,7 @@ public:
     }
     /// Returns the power that every source sends out in every band, (sources, bands), for light of
     /// one band that reaches the sources without their doing. Input Error where the series of
-    /// re-emissions grows without end.
+    /// re-emissions grows without end, which light (reached >= 0) shows.
     Eigen::MatrixXd sent(Eigen::Index excitation, const Eigen::VectorXd& reached) const;
 
 private:
@@ -46,6 +46,8 @@ private:
 
     Eigen::VectorXd within_band(Eigen::Index band) const;
     Eigen::VectorXd driven(Eigen::Index band, const Eigen::MatrixXd& reached) const;
+    Eigen::MatrixXd pass(Eigen::Index excitation, const Eigen::VectorXd& reached,
+                         Eigen::MatrixXd sent) const;
 
     std::vector<std::shared_ptr<const SourceTransport>> by_band_;
     std::vector<Group> groups_;
