@@ -11,9 +11,10 @@ namespace {
 
 using namespace test;
 
-/// Takes light from blue to green and yellow, with some of it absorbed again.
+/// Takes light from blue to green and yellow, with some of it absorbed again. Nothing outside the
+/// film's bands excites it.
 SlabDye dye(double concentration) {
-    return {.absorption = Spectrum::gaussian(460.0, 35.0, 1.0),
+    return {.absorption = Spectrum::table({400, 460, 540}, {0, 1, 0}),
             .concentration = concentration,
             .emission = Spectrum::gaussian(540.0, 30.0, 1.0),
             .quantum_yield = 0.9,
@@ -27,7 +28,7 @@ Layer dyed(Layer of, double concentration) {
 
 std::vector<Material> dyed_materials() {
     Layer two = dyed(layer(1.4), 0.5);
-    two.dyes.push_back({.absorption = Spectrum::gaussian(550.0, 30.0, 1.0),
+    two.dyes.push_back({.absorption = Spectrum::table({490, 550, 630}, {0, 1, 0}),
                         .concentration = 1.0,
                         .emission = Spectrum::gaussian(620.0, 25.0, 1.0),
                         .quantum_yield = 0.8,
