@@ -332,7 +332,9 @@ public:
     }
 
 protected:
-    std::vector<double> breaks_in_air() const override { return breaks_; }
+    Eigen::VectorXd integrate_escaped(Side to) const override {
+        return escaped_by_reciprocity(breaks_, to);
+    }
 
 private:
     std::vector<double> breaks_;

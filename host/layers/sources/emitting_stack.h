@@ -67,6 +67,7 @@ public:
 private:
     struct Level {
         StackCells cells;
+        std::vector<std::shared_ptr<const SourceTransport>> by_band;
         std::shared_ptr<const ReEmission> all, slabs_alone;
     };
     /// What every source sends out, (sources, bands), by excitation, with coarse and fine cells.
@@ -77,6 +78,8 @@ private:
     };
 
     Level make_level(int cells_per_octave) const;
+    Level make_coarser(const Level& fine) const;
+    void make_series(Level& level) const;
     std::vector<Eigen::MatrixXd> sent_by(const ReEmission& series, const AirDirection& from) const;
     std::shared_ptr<const Sent> sent(const AirDirection& from, Part part) const;
     Eigen::MatrixXd probe(const Level& coarse, const Level& fine) const;
