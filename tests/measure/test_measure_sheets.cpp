@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -101,6 +102,19 @@ TEST(MeasureSheets, DirectionalRowsSeeTheFarSide) {
     ASSERT_EQ(shifted.size(), 4U);
     for (const auto& [angles, value] : shifted)
         EXPECT_GT(value, 0.0) << angles.first << " " << angles.second;
+}
+
+TEST(MeasureSheets, ANoteTellsTheErrorOfTheDepthCells) {
+    MeasureRequest request = by_walk({0}, true);
+    request.model = Model::Adding;
+    const auto tells = [&](const LayerStack& stack) {
+        const Measurement found = measure_material(sheet_of(stack), request);
+        return std::ranges::any_of(found.notes, [](const std::string& note) {
+            return note.find("cells of depth") != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(tells(concentrator()));
+    EXPECT_FALSE(tells({{{}}, LowerFace{}}));
 }
 
 TEST(MeasureSheets, Case60RowsOfADyeOfConcentrationZeroAreThoseOfNone) {
