@@ -49,20 +49,20 @@ StackCells cells_of(const DyedStack& stack, int cells_per_octave) {
 EmittingStack::EmittingStack(DyedStack stack) : stack_(std::move(stack)) {
     constexpr int most_cells_per_octave = 32;
     for (int count = 4; count <= most_cells_per_octave; count *= 2) {
-        Level fine = make_level(count), middle = make_coarser(fine);
+        const Level fine = make_level(count), middle = make_coarser(fine);
         const Level coarse = make_coarser(middle);
         const Eigen::MatrixXd last = probe(coarse, middle), next = probe(middle, fine);
         const double largest = next.cwiseAbs().maxCoeff();
         error_ = largest > 0.0 ? (next - last).cwiseAbs().maxCoeff() / largest : 0.0;
-        levels_ = {std::move(middle), std::move(fine)};
+        levels_ = {middle, fine};
         if (error_ <= tolerance)
             break;
     }
 }
 
 EmittingStack::EmittingStack(DyedStack stack, int cells_per_octave) : stack_(std::move(stack)) {
-    Level fine = make_level(cells_per_octave);
-    levels_ = {make_coarser(fine), std::move(fine)};
+    const Level fine = make_level(cells_per_octave);
+    levels_ = {make_coarser(fine), fine};
 }
 
 EmittingStack::Level EmittingStack::make_level(int cells_per_octave) const {
