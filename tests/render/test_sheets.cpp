@@ -33,7 +33,7 @@ void lay_over(Scene& scene, const Material& sheet, double height) {
                             static_cast<int>(scene.materials.size()) - 1});
 }
 
-RenderOptions options_of(int samples, bool all_features = true) {
+RenderOptions options_of(std::uint32_t samples, bool all_features = true) {
     RenderOptions options;
     options.bands = bands;
     options.samples = samples;
