@@ -1,6 +1,7 @@
 """Makes of what a program prints the table of a document: `PROGRAM | document_tables.py NAME`.
 
-    model_errors, direction_errors, error_estimate, fit_measured, recovery_10nm, recovery_5nm, error_table, faults, fuzz
+    model_errors, direction_errors, depth_cells, dyed_seconds, error_estimate, fit_measured, recovery_10nm, recovery_5nm,
+    error_table, faults, fuzz
 """
 
 import re
@@ -35,6 +36,16 @@ def model_errors(text):
 
 def direction_errors(text):
     heading, *rows = only_table_of(text)
+    print_table(heading, rows)
+
+
+def depth_cells(text):
+    heading, *rows = tables_of(text)[0]
+    print_table(heading, rows)
+
+
+def dyed_seconds(text):
+    heading, *rows = tables_of(text)[1]
     print_table(heading, rows)
 
 
@@ -148,9 +159,10 @@ def fuzz(text):
                 [cells[k] + cells[third + k] + cells[2 * third + k] for k in range(third)])
 
 
-MAKERS = {"model_errors": model_errors, "direction_errors": direction_errors, "error_estimate": error_estimate,
-          "fit_measured": fit_measured, "error_table": error_table, "faults": faults, "fuzz": fuzz, "recovery_10nm": lambda text: recovery(text, "10"),
-          "recovery_5nm": lambda text: recovery(text, "5")}
+MAKERS = {"model_errors": model_errors, "direction_errors": direction_errors, "depth_cells": depth_cells,
+          "dyed_seconds": dyed_seconds, "error_estimate": error_estimate, "fit_measured": fit_measured,
+          "error_table": error_table, "faults": faults, "fuzz": fuzz,
+          "recovery_10nm": lambda text: recovery(text, "10"), "recovery_5nm": lambda text: recovery(text, "5")}
 
 if __name__ == "__main__":
     printed = sys.stdin.read()

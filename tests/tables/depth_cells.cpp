@@ -1,5 +1,5 @@
 // Dyed slabs by adding, as Markdown tables: the error of what they send out against the number of
-// depth cells, and the seconds that a material of one and of three dyed slabs takes.
+// depth cells, and the processor seconds that a material of one and of three dyed slabs takes.
 #include "host/layers/models/adding.h"
 #include "host/layers/models/layered_bsdf.h"
 #include "host/layers/stack/slab_emission.h"
@@ -8,8 +8,9 @@
 
 #include <fmt/core.h>
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -95,7 +96,7 @@ void print_errors() {
         "## Error against depth cells\n\nA sheet of varnish with a dye, 8 bands: largest "
         "error of a directional-hemispherical share, of the largest.\n\n| cells per octave |");
     for (const CellErrors& one : all)
-        fmt::print(" depth {:.2g}: cells, uniform, extrapolated |", one.depth);
+        fmt::print(" depth {:.1f}: cells, uniform, extrapolated |", one.depth);
     fmt::print("\n| --- | --- | --- | --- | --- |\n");
     for (std::size_t k = 0; k < all.front().uniform.size(); ++k) {
         fmt::print("| {} |", 1 << k);
@@ -125,17 +126,17 @@ LayerStack dyed_slabs(int count, double alpha, double scattering) {
 std::string timed(const LayerStack& stack) {
     const WavelengthGrid bands{300, 10, 49};
     const SubstrateValues white{.matrix = 0.9 * Eigen::MatrixXd::Identity(49, 49)};
-    using Clock = std::chrono::steady_clock;
-    const Clock::time_point start = Clock::now();
+    const std::clock_t start = std::clock();
     const LayeredBsdf bsdf(stack, white, bands, adding_bsdf);
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    return fmt::format("{}, {:.1e}, {:.2f} s", bsdf.emitting()->cells(), bsdf.emitting()->error(),
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    return fmt::format("{}, {:.1e}, {:.2g} s", bsdf.emitting()->cells(), bsdf.emitting()->error(),
                        seconds);
 }
 
 void print_seconds() {
-    fmt::print("\n## Seconds\n\nAt 49 bands, over a white ground.\n\n"
-               "| slabs | one dyed: cells, error, seconds | three dyed |\n| --- | --- | --- |\n");
+    fmt::print("\n## Processor seconds\n\nAt 49 bands, over a white ground.\n\n"
+               "| slabs | one dyed: cells, error, processor time | three dyed: the same |\n| --- | "
+               "--- | --- |\n");
     struct Kind {
         const char* name;
         double alpha, scattering;
