@@ -56,6 +56,7 @@ __kernel void gather(KERNEL_SIGNATURE(GATHER_ARGUMENTS)) {
     const PathState state = paths[path];
     const GatherScene scene = {.vertices = vertices,
                                .shadow_rays = shadow_rays,
+                               .crossings = crossings,
                                .lobe_weights = lobe_weights,
                                .colours = colours,
                                .materials = materials,

@@ -23,6 +23,7 @@ MaterialRecord material() {
     record.sigma = 0.3f;
     record.lowest_ior = 1.5f;
     record.spread_value = NO_INDEX;
+    record.other_side = NO_INDEX;
     return record;
 }
 
@@ -119,7 +120,7 @@ void fill_choice(CheckTables& tables) {
             tables.choice[node * CHECK_CHOICES + i] =
                 i == CHECK_CHOICES - 2
                     ? 1.0f
-                    : 0.15f * static_cast<float>(i + 1) + 0.001f * static_cast<float>(node);
+                    : 0.11f * static_cast<float>(i + 1) + 0.001f * static_cast<float>(node);
 }
 
 /// Ratios that change along all three axes, the same for both orders of the directions.

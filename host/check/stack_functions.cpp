@@ -10,6 +10,9 @@ const Accuracy share{5e-6, 1e-3, "products of shares up to 1"};
 /// The stack's roughnesses are 0.2 and 0.3.
 const Accuracy lobe{5e-5, 1e-4, "half vectors of refracted directions times the lobe's slope"};
 
+/// A passage through a roughness of 0.2 from the air into glass makes a lobe a third as wide.
+const Accuracy through_lobe{1e-3, 1e-4, "half vectors times the slope of a narrow lobe"};
+
 std::vector<CheckedFunction> model_a_functions() {
     const Arguments directions{direction(), direction()};
     return {
@@ -41,7 +44,7 @@ std::vector<CheckedFunction> model_a_functions() {
 std::vector<CheckedFunction> component_functions() {
     return {
         CHECKED_FUNCTION("layer_stack_choice", "kernels/stack/layer_stack.h", (Arguments{cosine()}),
-                         6, share, const LayerStackView stack = CHECK_STACK;
+                         9, share, const LayerStackView stack = CHECK_STACK;
                          const LayerChoice choice = layer_stack_choice(stack, in[0]);
                          for (uint i = 0u; i < CHOICES; ++i) out[i] = choice.cumulative[i];
                          out[CHOICES] = choice.largest_albedo),
@@ -60,6 +63,27 @@ std::vector<CheckedFunction> component_functions() {
                              int is_delta; const Vec3 wi = layer_stack_sample(
                                                stack, &choice, wo, in[3], in[4], in[5], &is_delta);
                              CHECK_RESULT(0, wi); out[3] = (real)is_delta),
+            CHECKED_FUNCTION("layer_stack_pdf sheet", "kernels/stack/layer_stack.h",
+                             (Arguments{direction(), direction()}), 1, lobe,
+                             LayerStackView stack = CHECK_STACK; AS_SHEET(stack);
+                             const Vec3 wo = CHECK_VECTOR(0);
+                             const LayerChoice choice = layer_stack_choice(stack, wo.z);
+                             out[0] = layer_stack_pdf(stack, &choice, wo,
+                                                      vec3(in[3], in[4], -in[5]))),
+            CHECKED_FUNCTION("layer_stack_sample sheet", "kernels/stack/layer_stack.h",
+                             (Arguments{direction(), unit(), unit(), unit()}), 4,
+                             (Accuracy{2e-5, 1.0, "components of a unit vector"}),
+                             LayerStackView stack = CHECK_STACK; AS_SHEET(stack);
+                             const Vec3 wo = CHECK_VECTOR(0);
+                             const LayerChoice choice = layer_stack_choice(stack, wo.z);
+                             int is_delta; const Vec3 wi = layer_stack_sample(
+                                               stack, &choice, wo, in[3], in[4], in[5], &is_delta);
+                             CHECK_RESULT(0, wi); out[3] = (real)is_delta),
+            CHECKED_FUNCTION("layer_stack_through_lobe", "kernels/stack/layer_stack.h",
+                             (Arguments{direction(), direction()}), 1, through_lobe,
+                             LayerStackView stack = CHECK_STACK; AS_SHEET(stack);
+                             out[0] = layer_stack_through_lobe(
+                                 stack, vec3(in[3], in[4], -in[5]), CHECK_VECTOR(0))),
             CHECKED_FUNCTION("layer_stack_top", "kernels/stack/layer_stack.h",
                              (Arguments{direction(), direction()}), 1, lobe,
                              const LayerStackView stack = CHECK_STACK;

@@ -110,6 +110,20 @@ HitRecord record_of(const SurfaceHit& hit, const Owner& owner) {
     return r;
 }
 
+/// Moves the origin of a ray behind what it has met, beyond the error of that place, as kernels do
+/// (kernels/stages/rays.h).
+void go_on_behind(const HitRecord& found, float cosine, RayRecord& ray) {
+    const float reach =
+        2.0f * found.position_error *
+        (std::fabs(found.normal_x) + std::fabs(found.normal_y) + std::fabs(found.normal_z)) *
+        (cosine < 0.0f ? -1.0f : 1.0f);
+    ray.origin_x = found.position_x + reach * found.normal_x;
+    ray.origin_y = found.position_y + reach * found.normal_y;
+    ray.origin_z = found.position_z + reach * found.normal_z;
+    ray.t_near = 0.0f;
+    ray.t_far -= found.distance;
+}
+
 /// The arena of so many threads (0: all). Kept: oneTBB 2021 gives none of the 8 KB back that each
 /// new one takes, 400 MB an hour of rendering.
 tbb::task_arena& arena_of(int threads) {
@@ -157,6 +171,7 @@ struct Geometry::Implementation {
     /// Marks those of the listed rays that something blocks; returns how many were active.
     std::uint64_t block(const RaysToBlock& rays, std::size_t begin, std::size_t end) const;
     void block(const RaysToBlock& rays, Packet<RTCRay16>& packet) const;
+    bool passes_sheets(const RaysToBlock& rays, std::uint32_t place, bool is_met) const;
     HitRecord describe(const RayRecord& record, const RTCRayHit16& found, std::size_t k,
                        double distance) const;
     template <typename Primitive>
@@ -330,10 +345,41 @@ std::uint64_t Geometry::Implementation::block(const RaysToBlock& rays, std::size
 
 void Geometry::Implementation::block(const RaysToBlock& rays, Packet<RTCRay16>& packet) const {
     embree_occluded(scene, packet.valid(), packet.rays());
-    for (int i = 0; i < packet.count(); ++i)
-        if (packet.rays().tfar[static_cast<std::size_t>(i)] < 0.0f)
-            rays.rays[packet.place(i)].t_far = -1.0f;
+    for (int i = 0; i < packet.count(); ++i) {
+        const std::uint32_t place = packet.place(i);
+        const bool is_met = packet.rays().tfar[static_cast<std::size_t>(i)] < 0.0f;
+        if (rays.sheets.materials.empty() ? is_met : !passes_sheets(rays, place, is_met))
+            rays.rays[place].t_far = -1.0f;
+    }
     packet.clear();
+}
+
+/// Follows a ray that meets something as far as that are smooth sheets, and notes them. Returns
+/// false where it is blocked.
+bool Geometry::Implementation::passes_sheets(const RaysToBlock& rays, std::uint32_t place,
+                                             bool is_met) const {
+    const auto crossings =
+        rays.sheets.crossings.subspan(std::size_t{place} * MOST_CROSSINGS, MOST_CROSSINGS);
+    std::ranges::fill(crossings, SheetCrossing{NO_INDEX, 0.0f});
+    RayRecord ray = rays.rays[place];
+    const std::uint32_t only = 0;
+    for (unsigned passed = 0; is_met; ++passed) {
+        HitRecord found{};
+        hit({{&ray, 1}, {&found, 1}, {&only, 1}}, 0, 1);
+        if (found.shape == NO_INDEX && found.light == NO_INDEX)
+            return true;
+        if (found.distance >= ray.t_far)
+            return true;
+        const std::uint32_t sheet =
+            found.light == NO_INDEX ? rays.sheets.materials[found.material] : NO_INDEX;
+        if (sheet == NO_INDEX || passed >= rays.sheets.most)
+            return false;
+        const float cosine = found.normal_x * ray.direction_x + found.normal_y * ray.direction_y +
+                             found.normal_z * ray.direction_z;
+        crossings[passed] = {sheet, std::fabs(cosine)};
+        go_on_behind(found, cosine, ray);
+    }
+    return true;
 }
 
 Geometry::Geometry(const Scene& scene, bool wants_parameters)

@@ -18,10 +18,18 @@ struct RaysToHit {
     bool coherent = false;
 };
 
+/// Smooth sheets that rays pass straight on, where there are any.
+struct PassedSheets {
+    std::span<const std::uint32_t> materials; ///< by surface: the sheet's material, or NO_INDEX
+    std::span<SheetCrossing> crossings;       ///< MOST_CROSSINGS for each ray, to be filled
+    unsigned most = 0;                        ///< sheets that a ray may pass here
+};
+
 /// Rays that something may block.
 struct RaysToBlock {
     std::span<RayRecord> rays;
     std::span<const std::uint32_t> live;
+    PassedSheets sheets{};
 };
 
 struct TraceStatistics {

@@ -14,11 +14,13 @@
 /// The tables' material, and a surface of Smith's kind by two arguments' distribution, alpha, IOR.
 #define CHECK_STACK                                                                                \
     { tables->material, tables->layers, tables->lobes, tables->choice }
+/// Makes a view of it that of a sheet with rough faces.
+#define AS_SHEET(stack) stack.record.other_side = stack.record.through_lobe = 0u
 #define CHECK_SURFACE                                                                              \
     { (int)in[0] + MICROFACET_BECKMANN, in[1], in[2], 1, 0, 0 }
 
 /// Columns of a row of choices (layer_stack.h).
-#define CHECK_CHOICES (4 + LOBES)
+#define CHECK_CHOICES (4 + LOBES + 3 * FEATURE_SHEETS)
 #define CHECK_LAYERS 3
 #define CHECK_TEXTURES 4
 #define CHECK_LIGHTS 4

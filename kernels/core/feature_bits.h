@@ -88,6 +88,20 @@ FEATURE_BIT(sheets, "light goes through no material")
 #define FEATURE_SHEETS 1
 #endif
 
+/// Some slab holds a dye, and its material is walked through (needs FEATURE_SCATTERING_SLABS).
+#ifdef FEATURE_BIT
+FEATURE_BIT(walked_dyes, "no slab that is walked through holds a dye")
+#elif !defined(FEATURE_WALKED_DYES)
+#define FEATURE_WALKED_DYES 1
+#endif
+
+/// Lights are looked for through smooth sheets.
+#ifdef FEATURE_BIT
+FEATURE_BIT(passed_sheets, "no light is looked for through a smooth sheet")
+#elif !defined(FEATURE_PASSED_SHEETS)
+#define FEATURE_PASSED_SHEETS 1
+#endif
+
 /// Some substrate is Oren-Nayar.
 #ifdef FEATURE_BIT
 FEATURE_BIT(oren_nayar, "no substrate is Oren-Nayar")

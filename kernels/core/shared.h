@@ -202,6 +202,7 @@ typedef struct {
     shared_uint dye_terms;    ///< 0: entry by entry
     shared_uint dye_channels;
     shared_uint dyes_shift_up; ///< 1: nothing is sent out below the wavelength that excites it
+    shared_uint is_passed;     ///< 1: shadow rays pass this smooth sheet straight on
     shared_uint other_side;    ///< of a sheet: the same as seen from below; NO_INDEX: it is opaque
     shared_uint dyes_far;      ///< of a sheet: `dyes` for directions on the other side
     shared_uint through_delta; ///< grey or spectral: weight of the direction straight on
@@ -209,7 +210,7 @@ typedef struct {
     shared_uint through_own, through_far; ///< grey or spectral: product form of what else goes
                                           ///< through, for directions on each side
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 152);
+ASSERT_SIZE(MaterialRecord, 156);
 
 /// Extinctions that distances in a scattering slab are sampled with (walk.h).
 #define WALK_REFERENCES 4
@@ -233,8 +234,11 @@ typedef struct {
     shared_float references[WALK_REFERENCES];
     shared_uint flakes;    ///< at the slab's end: index of their part in the stack; NO_INDEX: none
     shared_float coverage; ///< of the flakes, share of the area
+    shared_uint emission;  ///< of dyes: [phase][lane i][lane o], what they send out in o of a unit
+                           ///< of fluence in i, as optical depths at normal passage; NO_INDEX: none
+    shared_float emission_share; ///< of directions from events in the slab that are drawn for dyes
 } WalkPartRecord;
-ASSERT_SIZE(WalkPartRecord, 76);
+ASSERT_SIZE(WalkPartRecord, 84);
 
 /// One step of a recorded walk: a kind in the upper 8 bits, an index below, and a number.
 typedef struct {
@@ -256,7 +260,8 @@ ASSERT_SIZE(WalkChunk, 128);
 typedef struct {
     shared_uint chunk;     ///< the last one, or NO_INDEX
     shared_uint count;     ///< events in it; those before are full
-    shared_uint reference; ///< which of WALK_REFERENCES distances were sampled with
+    shared_uint reference; ///< which of WALK_REFERENCES distances were sampled with; NO_INDEX: the
+                           ///< weights of the events say
     shared_float weight;   ///< of the radiance along `next`
 } WalkVertexRecord;
 ASSERT_SIZE(WalkVertexRecord, 16);
@@ -312,8 +317,19 @@ typedef struct {
     shared_uint vertex_count; ///< records written for this path
     shared_float bsdf_pdf;    ///< of the last direction; < 0: delta or camera
     shared_float throughput;  ///< bound over the lanes, for Russian roulette
+    shared_float passed;      ///< way since the last direction was chosen, through smooth sheets
+    shared_uint crossings;    ///< of these sheets
 } PathState;
-ASSERT_SIZE(PathState, 24);
+ASSERT_SIZE(PathState, 32);
+
+/// Sheets that a shadow ray may pass straight on.
+#define MOST_CROSSINGS 4
+/// A smooth sheet that a shadow ray passed; material NO_INDEX: there are no more.
+typedef struct {
+    shared_uint material;
+    shared_float cosine;
+} SheetCrossing;
+ASSERT_SIZE(SheetCrossing, 8);
 
 /// Weights of one of the two directions that a vertex gathers from. Each is a scalar times
 /// cos(theta_i) / pdf; the lanes' factors are applied in `gather`.

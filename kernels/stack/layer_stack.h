@@ -201,14 +201,14 @@ DEVICE_FUNCTION Vec3 layer_stack_sample_through(LayerStackView stack, const Laye
     if (u0 < choice->cumulative[CHOICE_THROUGH_LOBE])
         wi = layer_stack_sample_lobe(layer_stack_through_distribution(stack),
                                      layer_stack_through_width(stack, wo.z, wo.z), wo, u1, u2);
-    return vec3(wi.x, wi.y, -wi.z);
+    return vec3(wi.x, wi.y, -fmax(wi.z, REAL(0.0)));
 }
 #endif
 
-/// Direction of one component, chosen by u0; *is_delta says whether it is the mirror, or straight
-/// on. The result may lie below the surface (z <= 0): then the path ends, but at a sheet.
-DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice* choice, Vec3 wo,
-                                        real u0, real u1, real u2, int* is_delta) {
+/// Direction of a component that reflects. The result may lie below the surface.
+DEVICE_FUNCTION Vec3 layer_stack_sample_reflected(LayerStackView stack, const LayerChoice* choice,
+                                                  Vec3 wo, real u0, real u1, real u2,
+                                                  int* is_delta) {
     *is_delta = 0;
 #if FEATURE_SMOOTH
     if (u0 < choice->cumulative[CHOICE_DELTA]) {
@@ -228,11 +228,23 @@ DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice*
                 (int)stack.lobes[l].distribution,
                 layer_stack_lobe_width(stack, stack.lobes[l], wo.z, wo.z), wo, u1, u2);
 #endif
-#if FEATURE_SHEETS
-    if (stack.record.other_side != NO_INDEX && !(u0 < choice->cumulative[CHOICE_DIFFUSE]))
-        return layer_stack_sample_through(stack, choice, wo, u0, u1, u2, is_delta);
-#endif
     return sampling_cosine(u1, u2);
+}
+
+/// Direction of one component, chosen by u0; *is_delta says whether it is the mirror, or straight
+/// on. The result may lie below the surface, or in that of a sheet (z = 0): then the path ends.
+DEVICE_FUNCTION Vec3 layer_stack_sample(LayerStackView stack, const LayerChoice* choice, Vec3 wo,
+                                        real u0, real u1, real u2, int* is_delta) {
+#if FEATURE_SHEETS
+    if (stack.record.other_side != NO_INDEX) {
+        *is_delta = 0;
+        if (!(u0 < choice->cumulative[CHOICE_DIFFUSE]))
+            return layer_stack_sample_through(stack, choice, wo, u0, u1, u2, is_delta);
+        const Vec3 wi = layer_stack_sample_reflected(stack, choice, wo, u0, u1, u2, is_delta);
+        return vec3(wi.x, wi.y, fmax(wi.z, REAL(0.0)));
+    }
+#endif
+    return layer_stack_sample_reflected(stack, choice, wo, u0, u1, u2, is_delta);
 }
 
 #if FEATURE_DEEPER_LOBES

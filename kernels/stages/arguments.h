@@ -25,13 +25,13 @@
 
 #define GATHER_ARGUMENTS(INPUT, OUTPUT, STRIP, VALUE)                                              \
     OUTPUT(shared_float, radiance), INPUT(PathState, paths), INPUT(VertexRecord, vertices),        \
-        INPUT(RayRecord, shadow_rays), INPUT(shared_float, lobe_weights),                          \
-        INPUT(shared_float, colours), INPUT(MaterialRecord, materials),                            \
-        INPUT(LayerRecord, layers), INPUT(LobeRecord, lobes), INPUT(LightRecord, lights),          \
-        INPUT(shared_float, tables), INPUT(WalkPartRecord, walk_parts),                            \
-        INPUT(WalkChunk, walk_chunks), INPUT(WalkVertexRecord, walk_vertices),                     \
-        OUTPUT(shared_uint, hero_lanes), OUTPUT(shared_float, hero_weights),                       \
-        VALUE(RenderRecord, render), VALUE(BatchRecord, batch)
+        INPUT(RayRecord, shadow_rays), INPUT(SheetCrossing, crossings),                            \
+        INPUT(shared_float, lobe_weights), INPUT(shared_float, colours),                           \
+        INPUT(MaterialRecord, materials), INPUT(LayerRecord, layers), INPUT(LobeRecord, lobes),    \
+        INPUT(LightRecord, lights), INPUT(shared_float, tables),                                   \
+        INPUT(WalkPartRecord, walk_parts), INPUT(WalkChunk, walk_chunks),                          \
+        INPUT(WalkVertexRecord, walk_vertices), OUTPUT(shared_uint, hero_lanes),                   \
+        OUTPUT(shared_float, hero_weights), VALUE(RenderRecord, render), VALUE(BatchRecord, batch)
 
 #define FILM_ARGUMENTS(INPUT, OUTPUT, STRIP, VALUE)                                                \
     STRIP(shared_float, sums), STRIP(shared_float, statistics), INPUT(shared_float, radiance),     \

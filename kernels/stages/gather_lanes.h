@@ -25,6 +25,7 @@ typedef float16 Lanes;
 typedef struct {
     __global const VertexRecord* vertices;
     __global const RayRecord* shadow_rays;
+    __global const SheetCrossing* crossings; ///< of shadow rays, MOST_CROSSINGS each
     __global const float* lobe_weights;
     __global const float* colours;
     __global const MaterialRecord* materials;
@@ -138,6 +139,24 @@ Lanes emission(const GatherScene* scene, const GatherContext* context, uint ligh
     }
 #endif
     return path_row(context, spectrum, chunk);
+}
+
+/// Radiance of the light that a vertex looked for, as it comes through smooth sheets.
+Lanes light_found(const GatherScene* scene, const GatherContext* context, uint light, size_t slot,
+                  uint chunk) {
+    Lanes radiance = emission(scene, context, light, chunk);
+#if FEATURE_PASSED_SHEETS
+    GatherContext sheet = *context;
+    for (uint k = 0u; k < MOST_CROSSINGS; ++k) {
+        const SheetCrossing crossing = scene->crossings[slot * MOST_CROSSINGS + k];
+        if (crossing.material == NO_INDEX)
+            break;
+        sheet.material = scene->materials[crossing.material];
+        radiance *= stack_lookup(&sheet, sheet.material.through_delta,
+                                 table_stencil(crossing.cosine), chunk);
+    }
+#endif
+    return radiance;
 }
 
 #endif

@@ -84,7 +84,7 @@ static void gather_layers(const GatherScene* scene, const GatherContext* context
 #if FEATURE_LIGHT_SAMPLING
     if (lit) {
         for (uint c = 0u; c < PATH_CHUNKS; ++c)
-            radiance[c] = emission(scene, context, vertex->light, c);
+            radiance[c] = light_found(scene, context, vertex->light, slot, c);
 #if FEATURE_HERO
         radiance[0] *= context->weights;
 #endif

@@ -94,6 +94,21 @@ static real delta_probability(const LayerChoice* choice, Vec3 wi) {
     return choice->cumulative[CHOICE_DELTA];
 }
 
+/// Notes how a path leaves a surface. Straight on through a sheet that shadow rays pass it goes on
+/// as if there were none: lights behind it are found from the last vertex before in two ways.
+static void leave_in(MaterialRecord material, Vec3 wi, real pdf, ShadeStep* step) {
+#if FEATURE_PASSED_SHEETS
+    if (material.is_passed && pdf < 0.0f && wi.z < 0.0f && step->state.crossings < MOST_CROSSINGS) {
+        step->state.passed += step->hit.distance;
+        ++step->state.crossings;
+        return;
+    }
+    step->state.passed = 0.0f;
+    step->state.crossings = 0u;
+#endif
+    step->state.bsdf_pdf = pdf;
+}
+
 /// Samples the direction in which the path goes on. It ends where none leaves the surface.
 static void leave_layers(SurfacePoint point, LayerStackView stack, const LayerChoice* choice,
                          Random4 u, real survival, ShadeStep* step) {
@@ -103,7 +118,7 @@ static void leave_layers(SurfacePoint point, LayerStackView stack, const LayerCh
     if (!surface_is_left(point, wi, direction))
         return;
     const real pdf = is_delta ? -1.0f : layer_stack_pdf(stack, choice, point.wo, wi);
-    step->state.bsdf_pdf = pdf;
+    leave_in(stack.record, wi, pdf, step);
     if (is_delta)
         step->vertex.next =
             delta_weights(stack, wi, delta_probability(choice, wi) * survival, step->lobe_weights);

@@ -19,8 +19,13 @@ real emission_weight(LightRecord light, const ShadeStep* step) {
         return 0.0f;
     if (step->state.bsdf_pdf < 0.0f)
         return 1.0f;
-    const real light_pdf =
-        light.selection * lights_pdf(light, ray_origin(step->ray), step->hit.distance, cos_light);
+    Vec3 from = ray_origin(step->ray);
+    real distance = step->hit.distance;
+#if FEATURE_PASSED_SHEETS
+    from = vec3_sub(from, vec3_scale(ray_direction(step->ray), step->state.passed));
+    distance += step->state.passed;
+#endif
+    const real light_pdf = light.selection * lights_pdf(light, from, distance, cos_light);
     return lights_mis_weight(step->state.bsdf_pdf, light_pdf);
 }
 #endif

@@ -58,9 +58,14 @@ static void shade_walk(const ShadeScene* scene, SurfacePoint point, MaterialReco
         step->vertex.has_next = 1u;
         step->state.throughput /= survival;
         step->state.bsdf_pdf = end.pdf;
+#if FEATURE_PASSED_SHEETS
+        step->state.passed = 0.0f;
+        step->state.crossings = 0u;
+#endif
         step->next = ray_from(step->hit, direction, INFINITY);
     }
-    const WalkVertexRecord kept = {walk.writer.chunk, walk.writer.count, walk.reference,
+    const WalkVertexRecord kept = {walk.writer.chunk, walk.writer.count,
+                                   walk.by_flight ? NO_INDEX : walk.reference,
                                    end.weight / survival};
     step->walk = kept;
 }

@@ -94,7 +94,7 @@ int walk_cross_slab(Walk* walk) {
     const uint k = walk->at.medium - 1u;
     const WalkPartRecord part = walk->stack.parts[k];
 #if FEATURE_SCATTERING_SLABS
-    if (part.scattering != NO_INDEX)
+    if (walk_spreads(part))
         return walk_scatter_in_slab(walk, k, part);
 #endif
     if (part.extinction != NO_INDEX) {
@@ -142,11 +142,12 @@ WalkEnd walk_stack(Walk* walk, Vec3 wo) {
     walk->is_delta = 1;
     walk->chance = 0.0f;
     walk->reference = 0u;
-#if FEATURE_SCATTERING_SLABS
-    walk->reference = (uint)(walk_uniform(&walk->random) * (float)WALK_REFERENCES);
-    for (uint r = 0u; r < WALK_REFERENCES; ++r)
-        walk->log_densities[r] = 0.0f;
+    walk->by_flight = 0;
+#if FEATURE_WALKED_DYES
+    for (uint k = 0u; k < walk->stack.count; ++k)
+        walk->by_flight |= walk->stack.parts[k].emission != NO_INDEX;
 #endif
+    walk_take_reference(walk);
     WalkEnd end = {vec3(0.0f, 0.0f, 1.0f), 0.0f, 0.0f, 0.0f};
     for (walk->steps = 0u; walk->at.down || walk->at.medium > 0u; ++walk->steps) {
         const int goes_on = walk->at.down && walk->at.medium == walk->stack.count

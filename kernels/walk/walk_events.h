@@ -8,7 +8,8 @@
 #include "kernels/core/shared.h"
 
 /// Straight through slab `index` over a length (in thicknesses): L *= exp(-(depth - s) length),
-/// where s is the extinction that distances were sampled with (0: they were not).
+/// where s is the extinction that distances were sampled with (0: they were not, or the walk's
+/// weight says so).
 #define WALK_PASS 1u
 /// Scattered in slab `index` after a length: L *= scattering / s * exp(-(depth - s) length).
 #define WALK_SCATTER 2u
@@ -18,12 +19,20 @@
 #define WALK_REFLECT 4u
 /// Conductor `index` gave back what its V-cavities lost: L *= what facets kept of it.
 #define WALK_BOUNCE 5u
+/// Met dyes in slab `index` after a length: L = (scattering L + emission L) exp(-depth length).
+/// Where the slab scatters, both parts have an L of their own, which WALK_MIX (written after, read
+/// before) makes of the one that comes in: value L is for scattering, and what makes the mean of
+/// the two weights 1 for emission.
+#define WALK_EMIT 6u
+#define WALK_MIX 7u
 /// A light seen from here: L += value * E. E is its spectrum after what the events that follow
-/// (and are read before) say of its way here: E *= exp(-depth length), and so on.
-#define WALK_CONNECT 6u
-#define WALK_LIGHT_PASS 7u
-#define WALK_LIGHT_REFLECT 8u
-#define WALK_LIGHT_BOUNCE 9u
+/// (and are read before) say of its way here: E *= exp(-depth length), and so on. Where the L for
+/// emission is another, WALK_CONNECT_EMISSION says what it receives.
+#define WALK_CONNECT 8u
+#define WALK_CONNECT_EMISSION 9u
+#define WALK_LIGHT_PASS 10u
+#define WALK_LIGHT_REFLECT 11u
+#define WALK_LIGHT_BOUNCE 12u
 
 #define WALK_KIND(code) ((code) >> 24)
 #define WALK_INDEX(code) ((code)&0xffffffu)

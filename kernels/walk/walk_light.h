@@ -70,6 +70,15 @@ WalkSurface walk_surface(WalkStack stack, uint part_index, int from_below) {
     return surface;
 }
 
+/// True for a slab where light may be scattered or re-emitted.
+int walk_spreads(WalkPartRecord slab) {
+#if FEATURE_WALKED_DYES
+    if (slab.emission != NO_INDEX)
+        return 1;
+#endif
+    return slab.scattering != NO_INDEX;
+}
+
 /// An interface between equal media scatters nothing, however rough.
 int walk_is_rough(WalkSurface surface) {
     return surface.alpha > 0.0f && surface.eta != 1.0f;
@@ -162,7 +171,7 @@ void walk_light_cross(WalkStack stack, WalkPosition at, WalkArrival* light, Walk
     if (!at.down)
         walk_light_pass_flakes(stack, at, light, random, arrivals);
 #if FEATURE_SCATTERING_SLABS
-    if (stack.parts[at.medium - 1u].scattering != NO_INDEX)
+    if (walk_spreads(stack.parts[at.medium - 1u]))
         walk_arrive(arrivals + WALK_IN_SLAB(at.medium - 1u, at.down), *light, random);
 #endif
     light->lengths[at.medium - 1u] += 1.0f / at.v.z;

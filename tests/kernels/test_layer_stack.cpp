@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace reradiant {
 namespace {
 
@@ -56,6 +58,7 @@ TEST(KernelLayerStack, Case12HenyeyGreensteinKeepsItsDigitsNearOne) {
 kernels::LayerStackView view(const std::vector<LobeRecord>& lobes) {
     kernels::LayerStackView stack{};
     stack.record.has_top_lobe = 1;
+    stack.record.other_side = NO_INDEX;
     stack.record.lobe_count = static_cast<std::uint32_t>(lobes.size());
     stack.layers = layers.data();
     stack.lobes = lobes.data();
@@ -68,7 +71,7 @@ TEST(KernelLayerStack, SamplesFollowTheirPdf) {
     const kernels::LayerStackView stack = view(lobes);
     kernels::LayerChoice choice{};
     for (int i = 0; i < CHOICES; ++i)
-        choice.cumulative[i] = i == 0 ? 0.0 : static_cast<double>(i) / (CHOICES - 1);
+        choice.cumulative[i] = std::min(static_cast<double>(i) / CHOICE_DIFFUSE, 1.0);
     const Vec3 wo = vec3(0.6, 0.0, 0.8);
     constexpr int rows = 8, columns = 16, count = 200000;
     std::vector<double> seen(rows * columns, 0.0);

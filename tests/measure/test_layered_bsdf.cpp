@@ -182,10 +182,14 @@ std::array<double, 2> sampled_albedo(const LayeredBsdf& bsdf, double theta, int 
         const double u0 = uniform(generator), u1 = uniform(generator), u2 = uniform(generator);
         const LayeredBsdf::Sample sample = bsdf.sample(w, {u0, u1, u2});
         double value = 0.0;
-        if (sample.is_delta)
-            value = bsdf.delta(w.z).sum() / sample.pdf;
-        else if (sample.w.z > 0.0)
-            value = bsdf.eval(w, sample.w).sum() * sample.w.z / sample.pdf;
+        const bool is_back = (sample.w.z > 0.0) == (w.z > 0.0);
+        const double c = std::fabs(w.z);
+        if (sample.is_delta && is_back)
+            value = bsdf.delta(c, w.z > 0.0 ? Side::Above : Side::Below).sum() / sample.pdf;
+        else if (sample.is_delta)
+            value = bsdf.straight_on(c).sum() / sample.pdf;
+        else if (sample.pdf > 0.0)
+            value = bsdf.eval(w, sample.w).sum() * std::fabs(sample.w.z) / sample.pdf;
         sum += value;
         squares += value * value;
     }
@@ -260,6 +264,36 @@ TEST(LayeredBsdf, SampledAlbedoIsTheHemisphericalMeasure) {
             const double margin = model == Model::Adding ? 1e-3 : 1e-4;
             EXPECT_NEAR(mean, albedo, bound * error + margin) << k << " theta " << theta;
             EXPECT_LT(error, 0.02) << k; // nothing escapes the lobes
+        }
+    }
+}
+
+TEST(LayeredBsdf, SampledLightOfASheetLeavesOnBothSides) {
+    Layer milky = layer(1.5, 0.0, Distribution::Ggx);
+    milky.scattering_coefficient = Spectrum::constant(0.7);
+    milky.absorption = Spectrum::constant(0.1);
+    const auto sheet = [](const Layer& slab, double alpha_below) {
+        return LayerStack{{slab},
+                          LowerFace{.alpha = alpha_below, .scattering = Scattering::Single}};
+    };
+    const std::vector<LayerStack> sheets{sheet(layer(1.5, 0.0, Distribution::Ggx), 0.0),
+                                         sheet(layer(1.5, 0.3, Distribution::Ggx), 0.15),
+                                         sheet(milky, 0.0), sheet(milky, 0.2)};
+    const double bound = test::sidak_bound(static_cast<int>(sheets.size()) * 4);
+    const int count = test::is_full_run() ? 1000000 : 20000;
+    for (std::size_t k = 0; k < sheets.size(); ++k) {
+        const LayeredBsdf bsdf(sheets[k], {}, one, adding_bsdf);
+        for (const double theta : {0.0, 50.0, 85.0, 130.0}) {
+            const AirDirection from{std::fabs(std::cos(theta * M_PI / 180.0)),
+                                    theta < 90.0 ? Side::Above : Side::Below};
+            double expected = 0.0;
+            for (const Side to : {Side::Above, Side::Below}) {
+                const LayeredBsdf::Parts parts = bsdf.albedo(from, to);
+                expected += parts.slab.sum() + parts.specular.sum();
+            }
+            const auto [mean, error] = sampled_albedo(bsdf, theta, count);
+            EXPECT_NEAR(mean, expected, bound * error + 2e-3) << k << " theta " << theta;
+            EXPECT_LT(error, 0.02) << k;
         }
     }
 }

@@ -201,10 +201,10 @@ TEST(Materials, ScatteringSlabsAreAsMeasured) {
     }
 }
 
-/// A dye that absorbs up to 550 nm and emits from 500 nm on.
+/// A dye that absorbs from 430 to 560 nm, within the bands, and emits from 480 nm on.
 SlabDye dye() {
     SlabDye result;
-    result.absorption = Spectrum::table({400, 500, 560}, {2.0, 1.2, 0.0});
+    result.absorption = Spectrum::table({430, 450, 500, 560}, {0.0, 2.0, 1.2, 0.0});
     result.emission = Spectrum::table({480, 560, 640, 700}, {0.0, 1.0, 0.4, 0.0});
     result.quantum_yield = 0.9;
     return result;

@@ -78,10 +78,14 @@ SceneTables random_tables(RandomMaterials& random, Model model, int count) {
     Scene scene = plane_scene(material({}, 0.5), 0.0, 1, 1);
     scene.lights = {environment(Spectrum::constant(1.0))};
     const WavelengthPlan plan = plan_wavelengths(scene, grid_from_range(450, 650, 100), options);
+    RenderFeatures features;
+    features.lobes = lobes;
     while (static_cast<int>(tables.materials.size()) < count) {
         try {
             const Material taken = random.material();
-            append_material(taken, plan_material(taken, {model, ""}, plan), plan, lobes, tables);
+            const MaterialPlan planned = plan_material(taken, {model, ""}, plan);
+            append_material(taken, planned, plan, features, MaterialOptics(taken, model, plan),
+                            tables);
         } catch (const Error& error) {
             EXPECT_EQ(error.exit_code(), 2) << error.what();
         }
@@ -90,8 +94,9 @@ SceneTables random_tables(RandomMaterials& random, Model model, int count) {
 }
 
 std::vector<float> evaluated(const SceneTables& tables, const std::vector<float>& input) {
-    static const cl::Program program = build_program_from_text(
-        device(), "random materials", source, {{"LOBES", lobes}, {"FEATURE_WALK", 0}});
+    static const cl::Program program =
+        build_program_from_text(device(), "random materials", source,
+                                {{"LOBES", lobes}, {"FEATURE_WALK", 0}, {"FEATURE_SHEETS", 0}});
     static std::mutex one_at_a_time;
     const std::scoped_lock lock(one_at_a_time);
     const std::size_t count = input.size() / inputs;

@@ -31,7 +31,11 @@ public:
         options.centred = true;
         const WavelengthPlan plan =
             plan_wavelengths(scene, grid_from_range(450, 650, 100), options);
-        append_material(material, plan_material(material, {model, ""}, plan), plan, LOBES, tables_);
+        RenderFeatures features; // as kernels are compiled here
+        features.lobes = LOBES;
+        features.sheets = FEATURE_SHEETS != 0;
+        append_material(material, plan_material(material, {model, ""}, plan), plan, features,
+                        MaterialOptics(material, model, plan), tables_);
         const MaterialRecord& record = tables_.materials.front();
         view_ = {record, tables_.layers.data(), tables_.lobes.data(), tables_.tables.data()};
     }

@@ -146,16 +146,29 @@ void expect_no_picture(const Material& material, Model model, const char* reason
 }
 
 /// What adding cannot do is measured by the walk, and no picture is made of it by approximation.
-TEST(ModelChoice, DyesAndSheetsBeyondAddingAreMeasuredAndNotRendered) {
+TEST(ModelChoice, SheetsBeyondAddingAreMeasuredAndNotRendered) {
     for (Material material : {dyed(), sheet()}) {
         add_flakes(material);
         EXPECT_EQ(choose_model(material, Model::Auto, ModelUse::Measure).model, Model::Walk);
     }
-    expect_no_picture(sheet(), Model::Auto, "does not know sheets");
-    expect_no_picture(dyed(), Model::Walk, "the renderer's walk does not know dyes");
-    Material flaked_dye = dyed();
+    EXPECT_EQ(choose_model(sheet(), Model::Auto, ModelUse::Render).model, Model::Adding);
+    EXPECT_EQ(choose_model(dyed(), Model::Auto, ModelUse::Render).model, Model::Adding);
+    expect_no_picture(sheet(), Model::Walk, "the renderer's walk does not know sheets");
+    Material flaked_sheet = sheet(), flaked_dye = dyed();
+    add_flakes(flaked_sheet);
+    expect_no_picture(flaked_sheet, Model::Auto, "the renderer's walk does not know sheets");
     add_flakes(flaked_dye);
-    expect_no_picture(flaked_dye, Model::Auto, "the renderer's walk does not know dyes");
+    EXPECT_EQ(choose_model(flaked_dye, Model::Auto, ModelUse::Render).model, Model::Walk);
+}
+
+TEST(ModelChoice, AddingKnowsRoughInterfacesOfSheetsAsFacesAlone) {
+    Material material = sheet();
+    material.stack.lower_face = LowerFace{.alpha = 0.2};
+    EXPECT_EQ(choose_model(material, Model::Auto, ModelUse::Measure).model, Model::Adding);
+    material.stack.layers.push_back(material.stack.layers.front());
+    material.stack.layers.back().alpha = 0.2;
+    EXPECT_EQ(choose_model(material, Model::Auto, ModelUse::Measure).model, Model::Walk);
+    expect_no_picture(material, Model::Auto, "rough interfaces inside a sheet");
 }
 
 } // namespace

@@ -208,6 +208,11 @@ const char* refusal(const StackElement& element) {
 } // namespace
 
 std::optional<std::string> adding_refusal(const LayerStack& stack) {
+    // total reflection begins within a cell of such an interface's directions, not between two: of
+    // thin sheets that absorb little the light that it guides is then off by a fifth
+    for (std::size_t k = 1; stack.is_sheet() && k < stack.layers.size(); ++k)
+        if (stack.layers[k].alpha > 0.0)
+            return "adding does not know rough interfaces inside a sheet";
     for (const Layer& layer : stack.layers) {
         if (layer.flakes && layer.flakes->coverage > 0.0)
             return flakes_reason;

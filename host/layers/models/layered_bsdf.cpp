@@ -58,8 +58,8 @@ std::vector<WeightedDirection> half_hemisphere(const std::vector<double>& breaks
 
 struct LayeredBsdf::Choices {
     static constexpr int nodes = 9;
-    std::once_flag made;
-    std::array<Choice, nodes> at_node;
+    std::array<std::once_flag, 2> made; ///< by side
+    std::array<std::array<Choice, nodes>, 2> at_node;
 };
 
 LayeredBsdf::LayeredBsdf(const LayerStack& stack, const SubstrateValues& substrate,
@@ -85,7 +85,9 @@ LayeredBsdf::LayeredBsdf(const LayerStack& stack, const SubstrateValues& substra
     coupling_ = rest_;
     if (stack.is_dyed())
         make_emitting(stack, bands);
-    lobes_ = at(bands.count / 2).lobes();
+    lobes_[0] = at(bands.count / 2).lobes();
+    if (is_sheet())
+        lobes_[1] = whole(bands.count / 2, Side::Below).lobes();
 }
 
 /// Models of neighbouring bands that do not differ are the same.
@@ -317,75 +319,143 @@ Eigen::VectorXd LayeredBsdf::straight_on(double cos_theta) const {
     return weight;
 }
 
+const LobeShape* LayeredBsdf::far_lobe() const {
+    const SheetTransmission* sheet =
+        is_sheet() ? sheets_[static_cast<std::size_t>(bands() / 2)].get() : nullptr;
+    return sheet && sheet->has_lobe() ? &sheet->lobe() : nullptr;
+}
+
 /// Shares of the light, means over the bands of what each emits under white light.
-LayeredBsdf::Choice LayeredBsdf::choice_at_node(double cos_theta) const {
-    double mirror = 0.0, lobes = 0.0, cosine = 0.0;
-    const Eigen::VectorXd diffuse = diffuse_albedo(cos_theta).rowwise().sum();
-    for (int band = 0; band < bands(); ++band) {
-        const double specular_delta = at(band).specular_delta(cos_theta);
-        const double conductor_delta = at(band).conductor_delta(cos_theta);
-        mirror += specular_delta + conductor_delta;
-        lobes += at(band).specular_albedo(cos_theta) - specular_delta;
-        (has_conductor_ ? lobes : cosine) += diffuse(band) - conductor_delta;
+LayeredBsdf::Choice LayeredBsdf::choice_at_node(const AirDirection& from) const {
+    const double c = from.cosine;
+    const Parts near = albedo(from, from.side);
+    double mirror = delta(c, from.side).sum();
+    double conductor = 0.0;
+    for (int band = 0; band < bands(); ++band)
+        conductor += whole(band, from.side).conductor_delta(c);
+    double lobes = near.specular.sum() - (mirror - conductor);
+    double cosine = near.slab.sum() + (has_conductor_ ? 0.0 : near.diffuse.sum());
+    if (has_conductor_)
+        lobes += near.diffuse.sum() - conductor;
+    double straight = 0.0, far_lobe_share = 0.0, far_cosine = 0.0;
+    if (is_sheet()) {
+        const Parts far = albedo(from, opposite(from.side));
+        straight = straight_on(c).sum();
+        far_lobe_share = std::max(far.specular.sum() - straight, 0.0);
+        far_cosine = far.slab.sum() + 0.1 * far_lobe_share; // what no amplitude brings
     }
-    if (lobes_.empty()) {
+    const std::vector<LobeShape>& shapes = lobes_[from.side == Side::Above ? 0 : 1];
+    if (shapes.empty()) {
         cosine += lobes;
         lobes = 0.0;
     }
-    const double sum = mirror + lobes + cosine;
+    const double sum = mirror + lobes + cosine + straight + far_lobe_share + far_cosine;
     if (!(sum > 0.0))
         return {};
-    const double rest = 1.0 - least_cosine;
-    const double count = std::max<double>(1.0, static_cast<double>(lobes_.size()));
-    return {rest * mirror / sum, least_cosine + rest * cosine / sum, rest * lobes / (sum * count)};
+    const double least_far = is_sheet() ? least_cosine : 0.0;
+    const double rest = (1.0 - least_cosine - least_far) / sum;
+    const double count = std::max<double>(1.0, static_cast<double>(shapes.size()));
+    return {rest * mirror,   least_cosine + rest * cosine,  rest * lobes / count,
+            rest * straight, least_far + rest * far_cosine, rest * far_lobe_share};
 }
 
-LayeredBsdf::Choice LayeredBsdf::choice(double cos_theta) const {
+LayeredBsdf::Choice LayeredBsdf::choice(const AirDirection& from) const {
     constexpr int nodes = Choices::nodes;
-    std::call_once(choices_->made, [this] {
+    const std::size_t side = from.side == Side::Above ? 0 : 1;
+    std::call_once(choices_->made[side], [&] {
         for (int node = 0; node < nodes; ++node) {
             const double u = static_cast<double>(node) / (nodes - 1);
             // at grazing light itself nothing is transported
-            choices_->at_node[static_cast<std::size_t>(node)] =
-                choice_at_node(std::max(u * u, 1e-4));
+            choices_->at_node[side][static_cast<std::size_t>(node)] =
+                choice_at_node({std::max(u * u, 1e-4), from.side});
         }
     });
-    const double x = std::sqrt(std::clamp(cos_theta, 0.0, 1.0)) * (nodes - 1);
+    const double x = std::sqrt(std::clamp(from.cosine, 0.0, 1.0)) * (nodes - 1);
     const int node = std::min(static_cast<int>(x), nodes - 2);
     const double t = x - node;
-    const Choice& a = choices_->at_node[static_cast<std::size_t>(node)];
-    const Choice& b = choices_->at_node[static_cast<std::size_t>(node) + 1];
-    return {std::lerp(a.mirror, b.mirror, t), std::lerp(a.cosine, b.cosine, t),
-            std::lerp(a.lobe, b.lobe, t)};
+    const Choice& a = choices_->at_node[side][static_cast<std::size_t>(node)];
+    const Choice& b = choices_->at_node[side][static_cast<std::size_t>(node) + 1];
+    return {std::lerp(a.mirror, b.mirror, t),
+            std::lerp(a.cosine, b.cosine, t),
+            std::lerp(a.lobe, b.lobe, t),
+            std::lerp(a.straight, b.straight, t),
+            std::lerp(a.far_cosine, b.far_cosine, t),
+            std::lerp(a.far_lobe, b.far_lobe, t)};
 }
 
+namespace {
+
+/// A direction found above, as it lies seen from w's side, on that side or on the other one. Of a
+/// sheet, one that was found below lies in the surface: nothing goes on there.
+Vec3 on_side_of(const Vec3& w, const Vec3& found, bool same, bool is_sheet) {
+    const bool above = (w.z > 0.0) == same;
+    const double z = is_sheet ? std::max(found.z, 0.0) : found.z;
+    return kernels::vec3(found.x, found.y, above ? z : -z);
+}
+
+} // namespace
+
 LayeredBsdf::Sample LayeredBsdf::sample(const Vec3& w, const std::array<double, 3>& random) const {
-    const Choice chosen = choice(w.z);
+    const Choice chosen = choice(air_direction(w));
+    const Vec3 own = mirrored_above(w);
     if (random[0] < chosen.mirror)
         return {kernels::vec3(-w.x, -w.y, w.z), chosen.mirror, true};
     double bound = chosen.mirror;
-    for (const LobeShape& lobe : lobes_) {
+    for (const LobeShape& lobe : lobes_[w.z > 0.0 ? 0 : 1]) {
         bound += chosen.lobe;
         if (random[0] < bound) {
-            const Vec3 other = kernels::layer_stack_sample_lobe(
-                kernel_distribution(lobe.distribution), sampling_width(lobe, w.z), w, random[1],
-                random[2]);
+            const Vec3 other =
+                on_side_of(w,
+                           kernels::layer_stack_sample_lobe(kernel_distribution(lobe.distribution),
+                                                            sampling_width(lobe, own.z), own,
+                                                            random[1], random[2]),
+                           true, is_sheet());
             return {other, pdf(w, other), false};
         }
     }
-    const Vec3 other = kernels::sampling_cosine(random[1], random[2]);
+    bound += chosen.cosine;
+    if (is_sheet() && !(random[0] < bound))
+        return sample_far(w, chosen, random[0] - bound, random);
+    const Vec3 other =
+        on_side_of(w, kernels::sampling_cosine(random[1], random[2]), true, is_sheet());
+    return {other, pdf(w, other), false};
+}
+
+/// `beyond`: how far the number that chooses lies in what is left for the far side.
+LayeredBsdf::Sample LayeredBsdf::sample_far(const Vec3& w, const Choice& chosen, double beyond,
+                                            const std::array<double, 3>& random) const {
+    if (beyond < chosen.straight)
+        return {kernels::vec3(-w.x, -w.y, -w.z), chosen.straight, true};
+    Vec3 found = kernels::sampling_cosine(random[1], random[2]);
+    const LobeShape* lobe = far_lobe();
+    if (lobe && beyond < chosen.straight + chosen.far_lobe) {
+        const Vec3 own = mirrored_above(w);
+        found = kernels::layer_stack_sample_lobe(kernel_distribution(lobe->distribution),
+                                                 sampling_width(*lobe, own.z), own, random[1],
+                                                 random[2]);
+    }
+    const Vec3 other = on_side_of(w, found, false, true);
     return {other, pdf(w, other), false};
 }
 
 double LayeredBsdf::pdf(const Vec3& w, const Vec3& other) const {
-    if (!(w.z > 0.0) || !(other.z > 0.0))
+    const bool same = (w.z > 0.0) == (other.z > 0.0);
+    if (w.z == 0.0 || other.z == 0.0 || (!is_sheet() && !(w.z > 0.0 && same)))
         return 0.0;
-    const Choice chosen = choice(w.z);
-    double sum = chosen.cosine * other.z * std::numbers::inv_pi;
-    for (const LobeShape& lobe : lobes_) {
-        sum += chosen.lobe * kernels::layer_stack_lobe_pdf(kernel_distribution(lobe.distribution),
-                                                           sampling_width(lobe, w.z), w, other);
+    const Choice chosen = choice(air_direction(w));
+    const Vec3 own = mirrored_above(w), found = mirrored_above(other);
+    const auto lobe_pdf = [&](const LobeShape& lobe) {
+        return kernels::layer_stack_lobe_pdf(kernel_distribution(lobe.distribution),
+                                             sampling_width(lobe, own.z), own, found);
+    };
+    if (!same) {
+        const LobeShape* lobe = far_lobe();
+        return chosen.far_cosine * found.z * std::numbers::inv_pi +
+               (lobe ? chosen.far_lobe * lobe_pdf(*lobe) : 0.0);
     }
+    double sum = chosen.cosine * found.z * std::numbers::inv_pi;
+    for (const LobeShape& lobe : lobes_[w.z > 0.0 ? 0 : 1])
+        sum += chosen.lobe * lobe_pdf(lobe);
     return sum;
 }
 

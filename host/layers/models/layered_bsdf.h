@@ -66,21 +66,23 @@ public:
     Eigen::VectorXd straight_on(double cos_theta) const;
 
     struct Sample {
-        kernels::Vec3 w{}; ///< may lie below the surface: then nothing goes on
-        /// 1/sr, what `pdf` says of w; of the mirror: its probability, to divide `delta` by
+        kernels::Vec3 w{}; ///< may lie below the surface: then nothing goes on, but of a sheet
+        /// 1/sr, what `pdf` says of w; of the mirror, or of straight on: its probability, to divide
+        /// `delta` or `straight_on` by
         double pdf = 0.0;
         bool is_delta = false;
     };
     /// Chooses the other direction for a given one (light or camera alike), from numbers in [0, 1).
     Sample sample(const kernels::Vec3& w, const std::array<double, 3>& random) const;
-    /// Density of the directions that `sample` finds for w, 1/sr, the mirror left out; 0 for
-    /// `other` below the surface.
+    /// Density of the directions that `sample` finds for w, 1/sr, deltas left out; 0 for `other`
+    /// below the surface of what is no sheet.
     double pdf(const kernels::Vec3& w, const kernels::Vec3& other) const;
 
 private:
-    /// Probabilities of mirror, cosine and each lobe.
+    /// Probabilities of mirror, cosine and each lobe, and on the far side of a sheet.
     struct Choice {
         double mirror = 0.0, cosine = 1.0, lobe = 0.0; ///< lobe: of each one
+        double straight = 0.0, far_cosine = 0.0, far_lobe = 0.0;
     };
     /// Choices over sqrt(cos), made when the first direction is asked for: they cost albedos.
     struct Choices;
@@ -95,8 +97,11 @@ private:
     Eigen::MatrixXd conductor_albedo(double cos_theta) const;
     Eigen::MatrixXd joint_albedo(double cos_theta) const;
     std::vector<double> breaks_of_all(double cos_i) const;
-    Choice choice_at_node(double cos_theta) const;
-    Choice choice(double cos_theta) const;
+    Choice choice_at_node(const AirDirection& from) const;
+    Choice choice(const AirDirection& from) const;
+    Sample sample_far(const kernels::Vec3& w, const Choice& chosen, double beyond,
+                      const std::array<double, 3>& random) const;
+    const LobeShape* far_lobe() const;
 
     std::vector<StackElements> stacks_;                                  ///< by band
     std::vector<std::shared_ptr<const StackBsdf>> models_, unscattered_; ///< empty for a sheet
@@ -106,7 +111,7 @@ private:
     double sigma_;
     Eigen::MatrixXd first_, rest_; ///< M and B of oren_nayar_substrate.h
     Eigen::MatrixXd coupling_;
-    std::vector<LobeShape> lobes_;
+    std::array<std::vector<LobeShape>, 2> lobes_; ///< by side
     std::shared_ptr<Choices> choices_;
 };
 

@@ -59,7 +59,11 @@ SheetTransmission::SheetTransmission(const StackElements& sheet)
         smooth_ = unscattered;
     } else {
         lobe_ = lobe_through(sheet);
-        tables_ = fit_lobe(lobe_, [&](double c) { return specular_albedo(c, Side::Above); });
+        // no more than goes through from either side, whose averages are equal: what is left of
+        // both has the product form
+        tables_ = fit_lobe(lobe_, [&](double c) {
+            return std::min(specular_albedo(c, Side::Above), specular_albedo(c, Side::Below));
+        });
         average_beside_ = average([&](double c) { return beside_lobe(c, Side::Above); });
     }
     if (scatters_)

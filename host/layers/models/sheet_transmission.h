@@ -38,6 +38,7 @@ public:
 
     /// True where a face is rough: there is a lobe and no delta.
     bool has_lobe() const { return smooth_.empty(); }
+    const LobeShape& lobe() const { return lobe_; }
     /// Amplitude of the lobe, the same from both sides.
     double lobe_amplitude(double cos_theta) const { return tables_.amplitude(cos_theta); }
     /// Approximate share of the flux that the lobe holds.

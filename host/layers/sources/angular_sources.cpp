@@ -83,26 +83,47 @@ FluxSection scatterer_section(const Scatterer& scatterer) {
     return section;
 }
 
-/// A dyed slab that scatters, cell by cell.
-FluxSection dyed_section(const SlabValues& slab, const AngularGrid& grid, const DepthCells& cells) {
-    const double share = cells.share(0);
-    const int sizes = cells.doublings(cells.count() / 2) + 1;
-    const std::vector<EmittingSlab> by_size =
-        emitting_slabs(grid, slab.tau * share, slab.tau_scattering * share, slab.anisotropy, sizes);
-    const auto cell_section = [&](int cell) {
-        const EmittingSlab& own = by_size[static_cast<std::size_t>(cells.doublings(cell))];
-        FluxSection section = empty_section(&grid, &grid, 1);
+/// A dyed slab that scatters, put together from its cells. Equal ones come in twos, and the lower
+/// half of the slab is the upper one upside down.
+class DyedSlabSections {
+public:
+    DyedSlabSections(const SlabValues& slab, const AngularGrid& grid, const DepthCells& cells)
+        : grid_(grid), cells_(cells), weight_(4.0 * slab.ior * slab.ior),
+          by_size_(emitting_slabs(grid, slab.tau * cells.share(0),
+                                  slab.tau_scattering * cells.share(0), slab.anisotropy,
+                                  cells.doublings(cells.count() / 2) + 1)) {}
+
+    FluxSection whole() const {
+        const int m = cells_.cells_per_octave;
+        FluxSection half = equal_cells(0, m);
+        for (int octave = 1; octave < cells_.octaves; ++octave)
+            half = section_above(half, equal_cells(cells_.doublings(octave * m), m));
+        return section_above(half, upside_down(half));
+    }
+
+private:
+    FluxSection equal_cells(int size, int count) const {
+        if (count == 1)
+            return cell(size);
+        const FluxSection half = equal_cells(size, count / 2);
+        return section_above(half, half);
+    }
+
+    FluxSection cell(int size) const {
+        const EmittingSlab& own = by_size_[static_cast<std::size_t>(size)];
+        FluxSection section = empty_section(&grid_, &grid_, 1);
         section.back_above = section.back_below = own.op.back;
         section.down = section.up = own.op.through;
         section.from_above = section.from_below = own.fluence.transpose();
-        section.between(0, 0) = 4.0 * slab.ior * slab.ior * own.own_fluence;
+        section.between(0, 0) = weight_ * own.own_fluence;
         return section;
-    };
-    FluxSection whole = cell_section(0);
-    for (int cell = 1; cell < cells.count(); ++cell)
-        whole = section_above(whole, cell_section(cell));
-    return whole;
-}
+    }
+
+    const AngularGrid& grid_;
+    const DepthCells& cells_;
+    double weight_;
+    std::vector<EmittingSlab> by_size_; ///< of the thinnest cell, of twice its thickness, ...
+};
 
 bool is_rough(const StackElement& element) {
     return std::holds_alternative<SurfaceValues>(element) && scatters(element);
@@ -274,7 +295,7 @@ private:
         if (cells.count() == 0)
             add(scatterer_section(scatterer_of(slab)), Eigen::VectorXd());
         else
-            add(dyed_section(slab, grid, cells),
+            add(DyedSlabSections(slab, grid, cells).whole(),
                 Eigen::VectorXd::Constant(cells.count(), 4.0 * slab.ior * slab.ior));
     }
 
@@ -311,7 +332,9 @@ public:
     }
 
 protected:
-    std::vector<double> breaks_in_air() const override { return breaks_; }
+    Eigen::VectorXd integrate_escaped(Side to) const override {
+        return escaped_by_reciprocity(breaks_, to);
+    }
 
 private:
     std::vector<double> breaks_;

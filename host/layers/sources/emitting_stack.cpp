@@ -1,5 +1,7 @@
 #include "host/layers/sources/emitting_stack.h"
 
+#include "host/layers/sources/coarse_sources.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -46,40 +48,58 @@ StackCells cells_of(const DyedStack& stack, int cells_per_octave) {
 
 EmittingStack::EmittingStack(DyedStack stack) : stack_(std::move(stack)) {
     constexpr int most_cells_per_octave = 32;
-    levels_ = {make_level(1), make_level(2)};
-    Eigen::MatrixXd last = probe(levels_[0], levels_[1]);
     for (int count = 4; count <= most_cells_per_octave; count *= 2) {
-        levels_.push_back(make_level(count));
-        const Eigen::MatrixXd next = probe(*(levels_.end() - 2), levels_.back());
+        const Level fine = make_level(count), middle = make_coarser(fine);
+        const Level coarse = make_coarser(middle);
+        const Eigen::MatrixXd last = probe(coarse, middle), next = probe(middle, fine);
         const double largest = next.cwiseAbs().maxCoeff();
         error_ = largest > 0.0 ? (next - last).cwiseAbs().maxCoeff() / largest : 0.0;
-        last = next;
+        levels_ = {middle, fine};
         if (error_ <= tolerance)
             break;
     }
-    levels_.erase(levels_.begin(), levels_.end() - 2);
+}
+
+EmittingStack::EmittingStack(DyedStack stack, int cells_per_octave) : stack_(std::move(stack)) {
+    const Level fine = make_level(cells_per_octave);
+    levels_ = {make_coarser(fine), fine};
 }
 
 EmittingStack::Level EmittingStack::make_level(int cells_per_octave) const {
-    Level level{cells_of(stack_, cells_per_octave), nullptr, nullptr};
-    std::vector<std::shared_ptr<const SourceTransport>> transports(stack_.by_band.size());
+    Level level{cells_of(stack_, cells_per_octave), {}, nullptr, nullptr};
+    level.by_band.resize(stack_.by_band.size());
     const auto like_the_last = [&](std::size_t band) {
         return band > 0 && stack_.by_band[band] == stack_.by_band[band - 1];
     };
-    tbb::parallel_for(std::size_t{0}, transports.size(), [&](std::size_t band) {
+    tbb::parallel_for(std::size_t{0}, level.by_band.size(), [&](std::size_t band) {
         if (!like_the_last(band))
-            transports[band] = source_transport(stack_.by_band[band], level.cells);
+            level.by_band[band] = source_transport(stack_.by_band[band], level.cells);
     });
-    for (std::size_t band = 1; band < transports.size(); ++band)
-        if (!transports[band])
-            transports[band] = transports[band - 1];
+    for (std::size_t band = 1; band < level.by_band.size(); ++band)
+        if (!level.by_band[band])
+            level.by_band[band] = level.by_band[band - 1];
+    make_series(level);
+    return level;
+}
+
+EmittingStack::Level EmittingStack::make_coarser(const Level& fine) const {
+    Level level{coarser(fine.cells), {}, nullptr, nullptr};
+    Eigen::Index cells = 0;
+    for (const DepthCells& own : fine.cells)
+        cells += own.count();
+    for (const auto& transport : fine.by_band)
+        level.by_band.push_back(coarse_sources(transport, cells));
+    make_series(level);
+    return level;
+}
+
+void EmittingStack::make_series(Level& level) const {
     level.all =
-        std::make_shared<ReEmission>(transports, level.cells, stack_.slabs, stack_.substrate);
+        std::make_shared<ReEmission>(level.by_band, level.cells, stack_.slabs, stack_.substrate);
     level.slabs_alone = stack_.substrate.size() == 0
                             ? level.all
-                            : std::make_shared<ReEmission>(transports, level.cells, stack_.slabs,
+                            : std::make_shared<ReEmission>(level.by_band, level.cells, stack_.slabs,
                                                            Eigen::MatrixXd());
-    return level;
 }
 
 std::vector<Eigen::MatrixXd> EmittingStack::sent_by(const ReEmission& series,
@@ -143,6 +163,13 @@ Eigen::MatrixXd EmittingStack::albedo(const AirDirection& from, Side to, Part pa
 Eigen::MatrixXd EmittingStack::guided(const AirDirection& from) const {
     return extrapolated(*sent(from, Part::All),
                         [](const SourceTransport& transport) { return transport.guided(); });
+}
+
+int EmittingStack::cells_per_octave() const {
+    int most = 2;
+    for (const DepthCells& cells : levels_.back().cells)
+        most = std::max(most, cells.count() > 0 ? cells.cells_per_octave : 0);
+    return most;
 }
 
 int EmittingStack::cells() const {

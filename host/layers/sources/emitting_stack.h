@@ -40,6 +40,8 @@ public:
     static constexpr double tolerance = 1e-4;
 
     explicit EmittingStack(DyedStack stack);
+    /// Takes so many cells as a stack much like this one needed, without asking for the error.
+    EmittingStack(DyedStack stack, int cells_per_octave);
 
     Eigen::Index bands() const { return static_cast<Eigen::Index>(stack_.by_band.size()); }
     /// Returns the BSDF of this light, 1/sr without the cosine: (bands, bands), rows = emission.
@@ -49,8 +51,9 @@ public:
     /// Returns the share that is guided for ever by total reflection, likewise.
     Eigen::MatrixXd guided(const AirDirection& from) const;
 
-    /// Depth cells of all slabs together, the finest.
+    /// Depth cells of all slabs together, the finest, and those of each octave (DepthCells).
     int cells() const;
+    int cells_per_octave() const;
     /// Change of the directional-hemispherical shares with the last halving of the cells, relative
     /// to the largest: a bound of their error.
     double error() const { return error_; }
@@ -64,6 +67,7 @@ public:
 private:
     struct Level {
         StackCells cells;
+        std::vector<std::shared_ptr<const SourceTransport>> by_band;
         std::shared_ptr<const ReEmission> all, slabs_alone;
     };
     /// What every source sends out, (sources, bands), by excitation, with coarse and fine cells.
@@ -74,6 +78,8 @@ private:
     };
 
     Level make_level(int cells_per_octave) const;
+    Level make_coarser(const Level& fine) const;
+    void make_series(Level& level) const;
     std::vector<Eigen::MatrixXd> sent_by(const ReEmission& series, const AirDirection& from) const;
     std::shared_ptr<const Sent> sent(const AirDirection& from, Part part) const;
     Eigen::MatrixXd probe(const Level& coarse, const Level& fine) const;

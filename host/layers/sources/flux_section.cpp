@@ -2,16 +2,21 @@
 
 #include "host/spectral/matrix/linear_systems.h"
 
+#include <utility>
+
 namespace reradiant {
 
 namespace {
 
-/// Flux between two sections after all reflections back and forth, per flux that is put in.
+/// Flux between two sections after all reflections back and forth, per flux that is put in:
+/// up = (I - B A)^-1 with A = above.back_below, B = below.back_above; down = (I - A B)^-1, which is
+/// I + A up B.
 struct Between {
-    explicit Between(const FluxSection& above, const FluxSection& below)
-        : down(all_orders(above.back_below * below.back_above)),
-          up(all_orders(below.back_above * above.back_below)), down_from_up(above.back_below * up),
-          up_from_down(below.back_above * down) {}
+    Between(const FluxSection& above, const FluxSection& below)
+        : up(all_orders(below.back_above * above.back_below)), down_from_up(above.back_below * up),
+          down(down_from_up * below.back_above), up_from_down(up * below.back_above) {
+        down.diagonal().array() += 1.0;
+    }
 
     static Eigen::MatrixXd all_orders(const Eigen::MatrixXd& round_trip) {
         const Eigen::Index n = round_trip.rows();
@@ -19,7 +24,7 @@ struct Between {
         return round_trip.isZero(0.0) ? Eigen::MatrixXd(one) : left_quotient(one - round_trip, one);
     }
 
-    Eigen::MatrixXd down, up, down_from_up, up_from_down;
+    Eigen::MatrixXd up, down_from_up, down, up_from_down;
 };
 
 Eigen::MatrixXd stacked(const Eigen::MatrixXd& top, const Eigen::MatrixXd& bottom) {
@@ -65,6 +70,18 @@ FluxSection section_above(const FluxSection& above, const FluxSection& below) {
     both.between = between_all(above, below, inner);
     both.guided = stacked(above.guided, below.guided);
     return both;
+}
+
+FluxSection upside_down(const FluxSection& section) {
+    FluxSection turned = section;
+    std::swap(turned.etendue_above, turned.etendue_below);
+    std::swap(turned.back_above, turned.back_below);
+    std::swap(turned.down, turned.up);
+    turned.from_above = section.from_below.colwise().reverse();
+    turned.from_below = section.from_above.colwise().reverse();
+    turned.between = section.between.reverse();
+    turned.guided = section.guided.reverse();
+    return turned;
 }
 
 Eigen::MatrixXd from_between_down(const FluxSection& above, const FluxSection& below) {

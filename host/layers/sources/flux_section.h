@@ -25,6 +25,9 @@ struct FluxSection {
 /// Returns a section above another one, whose upper grid is the lower grid of the first.
 FluxSection section_above(const FluxSection& above, const FluxSection& below);
 
+/// Returns the section as it is from below.
+FluxSection upside_down(const FluxSection& section);
+
 /// Returns (sources of both, cells): what a flux that goes down between two sections does at the
 /// sources of both, and one that goes up.
 Eigen::MatrixXd from_between_down(const FluxSection& above, const FluxSection& below);

@@ -39,7 +39,9 @@ public:
     }
 
 protected:
-    std::vector<double> breaks_in_air() const override { return breaks_; }
+    Eigen::VectorXd integrate_escaped(Side to) const override {
+        return escaped_by_reciprocity(breaks_, to);
+    }
 
 private:
     /// Integrates q from n^2 of one medium to that of the next; the latter is the reference, in

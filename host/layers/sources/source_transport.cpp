@@ -12,18 +12,20 @@ namespace reradiant {
 
 const Eigen::VectorXd& SourceTransport::escaped(Side to) const {
     Escaped& known = escaped_[to == Side::Above ? 0 : 1];
-    std::call_once(known.made, [&] {
-        Eigen::VectorXd sum = Eigen::VectorXd::Zero(sources());
-        const std::vector<double> breaks = breaks_in_air();
-        for (std::size_t piece = 0; piece + 1 < breaks.size(); ++piece) {
-            const double scale = std::numbers::pi * (breaks[piece + 1] - breaks[piece]);
-            for_sin2_nodes(
-                breaks[piece], breaks[piece + 1], escape_nodes,
-                [&](double c, double weight) { sum += scale * weight * c * reached(c, to); });
-        }
-        known.share = sum.cwiseQuotient(weights_);
-    });
+    std::call_once(known.made, [&] { known.share = integrate_escaped(to); });
     return known.share;
+}
+
+Eigen::VectorXd SourceTransport::escaped_by_reciprocity(const std::vector<double>& breaks,
+                                                        Side to) const {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(sources());
+    for (std::size_t piece = 0; piece + 1 < breaks.size(); ++piece) {
+        const double scale = std::numbers::pi * (breaks[piece + 1] - breaks[piece]);
+        for_sin2_nodes(
+            breaks[piece], breaks[piece + 1], escape_nodes,
+            [&](double c, double weight) { sum += scale * weight * c * reached(c, to); });
+    }
+    return sum.cwiseQuotient(weights_);
 }
 
 std::shared_ptr<const SourceTransport> source_transport(const StackElements& stack,

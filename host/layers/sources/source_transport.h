@@ -43,8 +43,11 @@ public:
     const Eigen::VectorXd& escaped(Side to) const;
 
 protected:
-    /// Pieces of a quadrature over the cosine in air.
-    virtual std::vector<double> breaks_in_air() const = 0;
+    /// Integrates what `escaped` says.
+    virtual Eigen::VectorXd integrate_escaped(Side to) const = 0;
+    /// Does so from what reaches the sources, by quadrature over the cosine in air between
+    /// `breaks`.
+    Eigen::VectorXd escaped_by_reciprocity(const std::vector<double>& breaks, Side to) const;
 
     Eigen::MatrixXd exchange_;
     Eigen::VectorXd weights_, guided_;

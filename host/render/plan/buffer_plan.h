@@ -40,6 +40,7 @@ namespace reradiant {
     /* [depth][path] */                                                                            \
     BUFFER(VertexRecord, vertices)                                                                 \
     BUFFER(RayRecord, shadow_rays)                                                                 \
+    BUFFER(SheetCrossing, crossings)                                                               \
     BUFFER(shared_float, colours)                                                                  \
     BUFFER(shared_float, lobe_weights)                                                             \
     BUFFER(WalkVertexRecord, walk_vertices)                                                        \

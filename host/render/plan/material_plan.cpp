@@ -53,7 +53,7 @@ public:
         else
             plan_closed_model();
         plan_substrate();
-        if (material_.stack.is_dyed())
+        if (material_.stack.is_dyed() && plan_.choice.model != Model::Walk)
             plan_dyes();
         return std::move(plan_);
     }
@@ -93,6 +93,7 @@ private:
         plan_.counts.lobes *= 2;
         plan_.counts.floats *= 2;
         const bool is_rough = !material_.stack.is_smooth();
+        plan_.is_straight = !is_rough;
         plan_.counts.floats += row_;  // a substrate that sends nothing back, for the other side
         plan_.counts.floats += nodes; // straight on, or the amplitude of a lobe
         if (is_rough || material_.stack.scatters())
@@ -193,10 +194,15 @@ private:
         plan_.counts.floats += plan_.ior_ratios * row_ + plan_.tabulated.size() * spectral_nodes();
     }
 
+    bool has_facet_lobe_on_a_side() const {
+        return has_facet_lobe(stack_) ||
+               (material_.stack.is_sheet() && has_facet_lobe(upside_down(stack_)));
+    }
+
     void plan_lobes() {
         plan_.counts.lobes = static_cast<std::uint64_t>(plan_.features.lobes);
         plan_.features.deeper_lobes = plan_.counts.lobes > 0;
-        if (plan_.choice.model == Model::Adding && has_facet_lobe(stack_))
+        if (plan_.choice.model == Model::Adding && has_facet_lobe_on_a_side())
             plan_.counts.floats += SHAPE_TABLE_SIZE;
         if (plan_.choice.model == Model::WeidlichWilkie)
             for (const DeeperLobe& lobe : weidlich_wilkie_lobes(stack_))
@@ -225,9 +231,16 @@ private:
         for (int phase = 0; phase < wavelengths_.phases; ++phase)
             for (int lane = 0; lane < static_cast<int>(wavelengths_.lanes.size()); ++lane)
                 append_depths(material_at(material_, wavelengths_.wavelength_nm(lane, phase)));
-        for (const SlabDepths& slab : plan_.slabs) {
-            plan_.features.scattering_slabs |= slab.scatters();
-            plan_.counts.floats += (slab.scatters() ? 2 : slab.absorbs() ? 1 : 0) * row_;
+        for (std::size_t k = 0; k < plan_.slabs.size(); ++k) {
+            const SlabDepths& slab = plan_.slabs[k];
+            const bool is_dyed = material_.stack.layers[k].is_dyed();
+            plan_.features.walked_dyes |= is_dyed;
+            plan_.features.scattering_slabs |= slab.scatters() || is_dyed;
+            plan_.counts.floats += (slab.scatters()  ? 2
+                                    : slab.absorbs() ? 1
+                                                     : 0) *
+                                       row_ +
+                                   (is_dyed ? lanes_ * row_ : 0);
         }
     }
 

@@ -41,8 +41,9 @@ struct MaterialPlan {
 
     // closed models
     bool has_delta = false, has_residual = false; ///< a mirror, light between facets or slabs
-    std::uint32_t model_a = 0;                    ///< MaterialRecord::weidlich_wilkie
-    std::size_t ior_ratios = 0;         ///< the first parts, whose IOR ratios go lane by lane
+    bool is_straight = false;   ///< of a sheet whose faces are smooth: light passes straight on
+    std::uint32_t model_a = 0;  ///< MaterialRecord::weidlich_wilkie
+    std::size_t ior_ratios = 0; ///< the first parts, whose IOR ratios go lane by lane
     std::vector<std::size_t> tabulated; ///< parts whose reflectance at facets is tabulated
 
     // walk

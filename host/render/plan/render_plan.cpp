@@ -87,6 +87,7 @@ public:
             plan_.materials[i] =
                 plan_material(scene_.materials[i], plan_.materials[i].choice, plan_.wavelengths);
         plan_.features = features(plan_.lights.features);
+        find_passed_sheets();
         count_paths();
         count_film();
         count_tables();
@@ -114,6 +115,30 @@ private:
         }
     }
 
+    /// Shadow rays pass smooth sheets whose material does not hang on a texture's chance.
+    void find_passed_sheets() {
+        std::vector<std::uint32_t> passed;
+        const std::vector<Surface> surfaces =
+            scene_.surfaces.empty() ? plain_surfaces(scene_) : scene_.surfaces;
+        const auto is_mixed_in = [&](std::size_t s) {
+            return std::ranges::any_of(surfaces, [&](const Surface& other) {
+                return other.mixed_with == static_cast<int>(s);
+            });
+        };
+        bool any = false;
+        for (std::size_t s = 0; s < surfaces.size(); ++s) {
+            const auto material = static_cast<std::size_t>(surfaces[s].first_material);
+            const bool is_passed =
+                plan_.materials[material].is_straight && is_plain(surfaces[s]) && !is_mixed_in(s);
+            passed.push_back(is_passed ? static_cast<std::uint32_t>(material) : NO_INDEX);
+            any = any || is_passed;
+        }
+        plan_.features.passed_sheets =
+            forced_.passed_sheets || (any && plan_.features.samples_lights());
+        if (plan_.features.passed_sheets)
+            plan_.passed_sheets = std::move(passed);
+    }
+
     /// All that is known so far of the materials, and the lights.
     RenderFeatures features(const RenderFeatures& lights) const {
         RenderFeatures all = forced_;
@@ -128,6 +153,7 @@ private:
         all.film_chunks = plan_.film.lanes / WIDTH;
         all.hero = plan_.wavelengths.hero;
         all.walk &= all.hero == 0;
+        all.dyes &= all.hero == 0;
         all.in_double = options_.in_double;
         return all;
     }
@@ -145,6 +171,7 @@ private:
         counts.radiance = paths * lanes();
         counts.vertices = vertices;
         counts.shadow_rays = features.samples_lights() ? vertices : 0;
+        counts.crossings = features.passed_sheets ? vertices * MOST_CROSSINGS : 0;
         counts.colours = features.has_colours() ? vertices * VERTEX_COLOURS : 0;
         counts.lobe_weights = vertices * 2 * static_cast<std::uint64_t>(features.lobes);
         counts.walk_vertices = features.walk ? vertices : 0;

@@ -18,6 +18,9 @@ namespace reradiant {
 struct RenderPlan {
     WavelengthPlan wavelengths;
     std::vector<MaterialPlan> materials; ///< as in Scene::materials
+    /// By surface: the material of a smooth sheet that shadow rays pass, or NO_INDEX; empty where
+    /// kernels know no such thing.
+    std::vector<std::uint32_t> passed_sheets;
     LightPlan lights;
     RenderFeatures features;
     FilmLayout film;

@@ -86,7 +86,7 @@ private:
         here.front() = o.delta(cosine);
         const std::vector<double> rough = o.lobe_shares(cosine);
         std::copy(rough.begin(), rough.end(), here.begin() + 1);
-        here[static_cast<std::size_t>(2 + lobes_)] =
+        here[2 + static_cast<std::size_t>(lobes_)] =
             diffuse_(lane, node) + o.residual_amplitude(cosine) * residual_(lane) +
             o.scattered_share(cosine);
     }
@@ -94,7 +94,7 @@ private:
     void add_through(int lane, int node, std::vector<double>& here) const {
         const SheetTransmission& sheet = optics_.sheet_at(phase_, lane);
         const double cosine = node_cosine(node);
-        const auto straight = static_cast<std::size_t>(3 + lobes_);
+        const auto straight = 3 + static_cast<std::size_t>(lobes_);
         here[straight] = sheet.delta(cosine);
         here[straight + 1] = sheet.has_lobe() ? sheet.lobe_albedo(cosine) : 0.0;
         here[straight + 2] = sheet.product_amplitude(cosine, optics_.side()) * beside_(lane) +
@@ -158,7 +158,7 @@ std::uint32_t append_choice(const MaterialOptics& optics, const DiffuseShare& di
             largest[i] = std::max(largest[i], rows.back().shares[i]);
     }
     // a black surface still chooses
-    const auto cosine = static_cast<std::size_t>(2 + features.lobes);
+    const auto cosine = 2 + static_cast<std::size_t>(features.lobes);
     largest[cosine] = std::max(largest[cosine], 1e-300);
     const std::uint32_t offset = lanes.here();
     for (ComponentShares& row : rows) {

@@ -1,7 +1,7 @@
 #include "host/render/tables/dyed_operator.h"
 
-#include "host/layers/stack/slab_emission.h"
 #include "host/render/tables/lane_tables.h"
+#include "host/render/tables/substrate_operator.h"
 #include "host/scene/model/closed_model.h"
 #include "host/spectral/matrix/singular_values.h"
 #include "kernels/core/shared.h"
@@ -24,22 +24,6 @@ constexpr double channel_tolerance = 1e-3;
 constexpr int most_terms = 8;
 /// What of the light between lanes the terms may leave out.
 constexpr double factor_tolerance = 5e-4;
-
-/// What a slab's dyes send out, on lanes.
-Eigen::MatrixXd dyes_on_lanes(const Layer& layer, const WavelengthPlan& plan, int phase) {
-    if (!layer.is_dyed())
-        return {};
-    const auto lanes = static_cast<Eigen::Index>(plan.lanes.size());
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(lanes, lanes);
-    for (const SlabDye& dye : layer.dyes) {
-        Eigen::MatrixXd sent = cells_on_lanes(dye_shares(dye, plan.comb), plan);
-        for (int lane = 0; lane < static_cast<int>(lanes); ++lane)
-            sent.col(lane) *= dye.concentration * layer.thickness *
-                              dye.absorption(plan.wavelength_nm(lane, phase));
-        sum += sent;
-    }
-    return sum;
-}
 
 /// What reaches the sources at the nodes of the tables: (TABLE_NODES, sources), twice as many rows
 /// for a sheet.
@@ -109,7 +93,10 @@ public:
         DyedOperator result;
         std::vector<double> left_out(most_channels, 0.0);
         for (int phase = 0; phase < plan_.phases; ++phase) {
-            stacks_.push_back(std::make_unique<EmittingStack>(stack_at_phase(phase)));
+            stacks_.push_back(
+                stacks_.empty() ? std::make_unique<EmittingStack>(stack_at_phase(phase))
+                                : std::make_unique<EmittingStack>(
+                                      stack_at_phase(phase), stacks_.front()->cells_per_octave()));
             result.cells = std::max(result.cells, stacks_.back()->cells());
             result.depth_error = std::max(result.depth_error, stacks_.back()->error());
             add_reached(left_out);

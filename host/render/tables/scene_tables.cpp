@@ -37,6 +37,11 @@ void append_materials(const Scene& scene, const RenderPlan& plan, SceneTables& t
     for (const auto& [index, optics] : sheets)
         append_other_side(scene.materials[index], plan.materials[index], plan.wavelengths,
                           plan.features, optics, index, tables);
+    for (const std::uint32_t material : plan.passed_sheets)
+        if (material != NO_INDEX) {
+            MaterialRecord& above = tables.materials[material];
+            above.is_passed = tables.materials[above.other_side].is_passed = 1u;
+        }
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "host/render/tables/substrate_operator.h"
 
 #include "host/layers/models/effective_matrix.h"
+#include "host/layers/stack/slab_emission.h"
 #include "host/scene/model/substrate.h"
 #include "host/spectral/matrix/singular_values.h"
 #include "reradiant/reradiation.h"
@@ -107,6 +108,21 @@ Eigen::MatrixXd cells_on_lanes(const Eigen::MatrixXd& cells, const WavelengthPla
         }
     }
     return matrix;
+}
+
+Eigen::MatrixXd dyes_on_lanes(const Layer& layer, const WavelengthPlan& plan, int phase) {
+    if (!layer.is_dyed())
+        return {};
+    const auto lanes = static_cast<Eigen::Index>(plan.lanes.size());
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(lanes, lanes);
+    for (const SlabDye& dye : layer.dyes) {
+        Eigen::MatrixXd sent = cells_on_lanes(dye_shares(dye, plan.comb), plan);
+        for (int lane = 0; lane < static_cast<int>(lanes); ++lane)
+            sent.col(lane) *= dye.concentration * layer.thickness *
+                              dye.absorption(plan.wavelength_nm(lane, phase));
+        sum += sent;
+    }
+    return sum;
 }
 
 Eigen::MatrixXd substrate_on_lanes(const Substrate& substrate, const SubstrateOnCells& on_cells,

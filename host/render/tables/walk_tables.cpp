@@ -3,6 +3,7 @@
 #include "host/layers/rough/facet_reflectance.h"
 #include "host/layers/walk/walk_surface.h"
 #include "host/render/plan/material_plan.h"
+#include "host/render/tables/substrate_operator.h"
 #include "host/render/tables/substrate_tables.h"
 #include "host/scene/model/closed_model.h"
 
@@ -18,6 +19,8 @@ namespace {
 /// Distances in a scattering slab are sampled with extinctions down to this share of the largest:
 /// where a lane's is smaller still, weights bounded by WALK_REFERENCES make up for it.
 constexpr double least_reference = 1e-3;
+/// Of the events in a slab that scatters and holds dyes either kind takes this share at least.
+constexpr double least_branch = 0.1;
 
 /// A surface of a stack, or of its substrate; nothing beneath it yet.
 WalkPartRecord surface_part(const SurfaceValues& surface) {
@@ -28,20 +31,24 @@ WalkPartRecord surface_part(const SurfaceValues& surface) {
     part.multiple = surface.scattering == Scattering::Multiple ? 1u : 0u;
     part.albedo = 1.0f;
     part.cavities = part.reflectance = part.bounced = NO_INDEX;
-    part.extinction = part.scattering = part.flakes = NO_INDEX;
+    part.extinction = part.scattering = part.flakes = part.emission = NO_INDEX;
     return part;
 }
 
 /// Extinctions in equal ratios from the smallest lane's to the largest's, and the largest albedo.
-void set_references(const SlabDepths& depths, WalkPartRecord& part) {
+/// Where a lane receives more from dyes than it loses, what it receives counts: `emitted`, the sums
+/// of emission over the lanes of excitation, or nothing.
+void set_references(const SlabDepths& depths, const std::vector<double>& emitted,
+                    WalkPartRecord& part) {
     double least = std::numeric_limits<double>::infinity(), most = 0.0, albedo = 0.0;
     const std::size_t count = depths.absorption.size();
     for (std::size_t i = 0; i < count; ++i) {
-        const double extinction = depths.extinction(i);
-        least = std::min(least, extinction);
-        most = std::max(most, extinction);
-        if (extinction > 0.0)
-            albedo = std::max(albedo, depths.scattering[i] / extinction);
+        const double sent = depths.scattering[i] + (emitted.empty() ? 0.0 : emitted[i]);
+        const double events = std::max(depths.extinction(i), sent);
+        least = std::min(least, events);
+        most = std::max(most, events);
+        if (events > 0.0)
+            albedo = std::max(albedo, sent / events);
     }
     least = std::max(least, least_reference * most);
     for (int r = 0; r < WALK_REFERENCES; ++r)
@@ -104,16 +111,46 @@ private:
     void append_slab(const SlabDepths& depths, double anisotropy, WalkPartRecord& part) {
         if (!depths.absorbs() && !depths.scatters())
             return;
+        const Layer& layer = material_.stack.layers[record_.layer_count - 1];
         part.least_depth = static_cast<float>(
             *std::min_element(depths.absorption.begin(), depths.absorption.end()));
         part.extinction = lanes_.append_lanes(
             [&](int phase, int lane) { return depths.extinction(index(phase, lane)); });
-        if (!depths.scatters())
-            return;
-        part.scattering = lanes_.append_lanes(
-            [&](int phase, int lane) { return depths.scattering[index(phase, lane)]; });
-        part.anisotropy = static_cast<float>(anisotropy);
-        set_references(depths, part);
+        if (depths.scatters()) {
+            part.scattering = lanes_.append_lanes(
+                [&](int phase, int lane) { return depths.scattering[index(phase, lane)]; });
+            part.anisotropy = static_cast<float>(anisotropy);
+        }
+        if (layer.is_dyed())
+            append_dyes(layer, depths, part);
+        else if (depths.scatters())
+            set_references(depths, {}, part);
+    }
+
+    /// What the dyes send out, by columns.
+    void append_dyes(const Layer& layer, const SlabDepths& depths, WalkPartRecord& part) {
+        std::vector<double> emitted;
+        part.emission = lanes_.here();
+        for (int phase = 0; phase < lanes_.phases(); ++phase) {
+            const Eigen::MatrixXd sent = dyes_on_lanes(layer, lanes_.plan(), phase);
+            append_columns(sent);
+            for (const double sum : sent.rowwise().sum().eval())
+                emitted.push_back(sum);
+        }
+        set_references(depths, emitted, part);
+        const double most_emitted = *std::ranges::max_element(emitted);
+        const double most_scattered = *std::ranges::max_element(depths.scattering);
+        part.emission_share =
+            most_scattered > 0.0
+                ? static_cast<float>(std::clamp(most_emitted / (most_emitted + most_scattered),
+                                                least_branch, 1.0 - least_branch))
+                : 1.0f;
+    }
+
+    void append_columns(const Eigen::MatrixXd& matrix) {
+        for (int i = 0; i < lanes_.padded_lanes(); ++i)
+            for (int o = 0; o < lanes_.padded_lanes(); ++o)
+                lanes_.append(i < lanes_.lanes() && o < lanes_.lanes() ? matrix(o, i) : 0.0);
     }
 
     /// The operator of the bare substrate, M / pi: what the stack sends back to it is walked.

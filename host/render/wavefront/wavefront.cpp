@@ -63,7 +63,7 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Rende
                      BuildStatistics& build)
     : device_(device), geometry_(geometry), on_rays_(on_rays), threads_(threads),
       depths_(plan.depths), paths_together_(together_on(device.info())), walks_(plan.features.walk),
-      render_(render_record(plan, scene)) {
+      passed_sheets_(plan.passed_sheets), render_(render_record(plan, scene)) {
     opencl_checked("setting up the renderer", [&] {
         build_kernels(plan.features, build);
         buffers_ = {device, plan, scene};
@@ -214,7 +214,14 @@ void Wavefront::trace(const Batch& work, std::uint32_t depth) {
     const auto shadow_live =
         map_live(CL_MAP_READ, before, has_shadows ? live_count_[before % 2] : 0);
     const RaysToHit to_hit{rays.span(), hits.span(), live.span(), depth == 0};
-    const RaysToBlock to_block{shadow_rays.span(), shadow_live.span()};
+    const bool passes = has_shadows && !passed_sheets_.empty();
+    const auto crossings = buffers_.crossings.map(
+        CL_MAP_WRITE, std::size_t{before} * render_.capacity * MOST_CROSSINGS,
+        passes ? work.paths() * MOST_CROSSINGS : 0);
+    RaysToBlock to_block{shadow_rays.span(), shadow_live.span()};
+    if (passes) // as many as the path itself could meet
+        to_block.sheets = {passed_sheets_, crossings.span(),
+                           std::min<unsigned>(MOST_CROSSINGS, render_.max_depth - before - 1)};
     show_rays(to_hit, to_block);
     const TraceStatistics traced = geometry_.trace(to_hit, to_block, threads_);
     statistics_.rays += live.span().size() + traced.blockable;

@@ -85,6 +85,7 @@ private:
     std::uint32_t depths_;         ///< rays of a path at most
     std::uint32_t paths_together_; ///< of a work-item
     bool walks_;
+    std::vector<std::uint32_t> passed_sheets_; ///< as in RenderPlan
     RenderRecord render_;
     WavefrontStatistics statistics_;
     /// Kernels that were queued, and where their time goes.

@@ -2,14 +2,18 @@
 
 #include "reradiant/error.h"
 
+#include <fmt/core.h>
+
 namespace reradiant {
 
 namespace {
 
 template <typename T>
-DeviceArray<T> filled(const Device& device, const std::vector<T>& values, std::uint64_t planned) {
+DeviceArray<T> filled(const Device& device, const char* name, const std::vector<T>& values,
+                      std::uint64_t planned) {
     if (values.size() > planned)
-        throw_runtime_error("a table is larger than its plan says");
+        throw_runtime_error(
+            fmt::format("{} holds {} elements, its plan says {}", name, values.size(), planned));
     return {device, std::span<const T>(values)};
 }
 
@@ -18,12 +22,12 @@ DeviceArray<T> filled(const Device& device, const std::vector<T>& values, std::u
 WavefrontBuffers::WavefrontBuffers(const Device& device, const RenderPlan& plan,
                                    const SceneTables& scene) {
     const BufferCounts& counts = plan.counts;
-#define BUFFER(type, name) name = filled(device, scene.name, counts.name);
+#define BUFFER(type, name) name = filled(device, #name, scene.name, counts.name);
     SCENE_BUFFERS(BUFFER)
 #undef BUFFER
-    film_bands = filled(device, plan.film.lane_bands, counts.film_bands);
-    film_weights = filled(device, plan.film.lane_weights, counts.film_weights);
-    y_weights = filled(device, plan.film.y_weights, counts.y_weights);
+    film_bands = filled(device, "film_bands", plan.film.lane_bands, counts.film_bands);
+    film_weights = filled(device, "film_weights", plan.film.lane_weights, counts.film_weights);
+    y_weights = filled(device, "y_weights", plan.film.y_weights, counts.y_weights);
 #define BUFFER(type, name) name = {device, counts.name};
     PATH_BUFFERS(BUFFER)
 #undef BUFFER

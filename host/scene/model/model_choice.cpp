@@ -79,7 +79,7 @@ ModelChoice choose_by_itself(const Material& material, ModelUse use) {
                                : "auto: adding, every interreflection over the diffuse substrate"};
 }
 
-/// Refuses pictures that the renderer cannot make yet: of sheets and of dyes in layers by its walk.
+/// Refuses pictures that the renderer cannot make yet: of sheets by its walk.
 void refuse_pictures(const Material& material, const ModelChoice& choice, ModelUse use) {
     if (use == ModelUse::Measure)
         return;
@@ -89,11 +89,6 @@ void refuse_pictures(const Material& material, const ModelChoice& choice, ModelU
                           "the renderer's walk does not know sheets yet" + because,
                           "the model adding renders them without flakes and films on rough "
                           "interfaces; `reradiant measure` walks them all");
-    if (material.stack.is_dyed() && choice.model == Model::Walk)
-        throw_input_error(
-            material.position, "the renderer's walk does not know dyes in layers yet" + because,
-            "the model adding renders them without flakes, conductors, Oren-Nayar substrates and "
-            "films on rough interfaces; `reradiant measure` walks them all");
 }
 
 } // namespace
