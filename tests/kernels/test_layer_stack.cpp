@@ -90,15 +90,17 @@ TEST(KernelLayerStack, SamplesFollowTheirPdf) {
         const double phi = std::atan2(w.y, w.x) / 6.283185307179586 + 0.5;
         const int row = std::min(rows - 1, static_cast<int>(w.z * rows));
         const int column = std::min(columns - 1, static_cast<int>(phi * columns));
-        seen[static_cast<std::size_t>(row * columns + column)] += 1.0;
+        const int cell = row * columns + column;
+        seen[static_cast<std::size_t>(cell)] += 1.0;
     }
     double chi = 0.0, total = 0.0;
     constexpr int fine = 24;
     for (int cell = 0; cell < rows * columns; ++cell) {
         double integral = 0.0;
+        const int row = cell / columns;
         for (int a = 0; a < fine; ++a)
             for (int b = 0; b < fine; ++b) {
-                const double z = (cell / columns + (a + 0.5) / fine) / rows;
+                const double z = (row + (a + 0.5) / fine) / rows;
                 const double phi =
                     ((cell % columns + (b + 0.5) / fine) / columns - 0.5) * 6.283185307179586;
                 const double s = std::sqrt(1 - z * z);

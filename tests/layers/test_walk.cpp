@@ -146,7 +146,8 @@ TEST(Walk, SamplesAreWhereEvalSaysThatLightGoes) {
         const WalkSample found = walk.sample(wi, 0, random);
         if (found.weight > 0.0) {
             const int ring = std::min(static_cast<int>(found.w.z * rings), rings - 1);
-            const auto region = static_cast<std::size_t>(ring * halves + (found.w.x < 0.0));
+            const int place = ring * halves + (found.w.x < 0.0);
+            const auto region = static_cast<std::size_t>(place);
             const auto band = static_cast<std::size_t>(found.band);
             sampled[region][band] += found.weight / count;
             squares[region][band] += found.weight * found.weight / count;
@@ -155,9 +156,9 @@ TEST(Walk, SamplesAreWhereEvalSaysThatLightGoes) {
     for (int region = 0; region < regions; ++region) {
         // eval in directions drawn evenly from the region, a new one a walk
         std::array<double, 2> sum{}, square{};
-        const int draws = count / 6;
+        const int draws = count / 6, ring = region / halves;
         for (int k = 0; k < draws; ++k) {
-            const double c = (region / halves + random.next()) / rings;
+            const double c = (ring + random.next()) / rings;
             const double phi = 180.0 * (random.next() - 0.5 + region % halves);
             const kernels::Vec3 wo = test::direction_deg(std::acos(c) * 180.0 / M_PI, phi);
             WalkTally tally = walk.tally(1);
