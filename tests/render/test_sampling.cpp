@@ -139,7 +139,8 @@ std::vector<double> expected(const LayerStackView& view, const Vec3& wo, double 
             if (!slopes.is_whole(i, j))
                 continue;
             const double share = cell_share(view, choice, wo, slopes, i, j);
-            shares[static_cast<std::size_t>(i * side + j)] = share;
+            const int cell = i * side + j;
+            shares[static_cast<std::size_t>(cell)] = share;
             shares[outside] -= share;
         }
     return shares;
