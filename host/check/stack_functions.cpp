@@ -63,27 +63,27 @@ std::vector<CheckedFunction> component_functions() {
                              int is_delta; const Vec3 wi = layer_stack_sample(
                                                stack, &choice, wo, in[3], in[4], in[5], &is_delta);
                              CHECK_RESULT(0, wi); out[3] = (real)is_delta),
-            CHECKED_FUNCTION("layer_stack_pdf sheet", "kernels/stack/layer_stack.h",
-                             (Arguments{direction(), direction()}), 1, lobe,
-                             LayerStackView stack = CHECK_STACK; AS_SHEET(stack);
-                             const Vec3 wo = CHECK_VECTOR(0);
-                             const LayerChoice choice = layer_stack_choice(stack, wo.z);
-                             out[0] = layer_stack_pdf(stack, &choice, wo,
-                                                      vec3(in[3], in[4], -in[5]))),
+            CHECKED_FUNCTION(
+                "layer_stack_pdf sheet", "kernels/stack/layer_stack.h",
+                (Arguments{direction(), direction()}), 1, lobe, LayerStackView stack = CHECK_STACK;
+                AS_SHEET(stack); const Vec3 wo = CHECK_VECTOR(0);
+                const LayerChoice choice = layer_stack_choice(stack, wo.z);
+                out[0] = layer_stack_pdf(stack, &choice, wo, vec3(in[3], in[4], -in[5]))),
             CHECKED_FUNCTION("layer_stack_sample sheet", "kernels/stack/layer_stack.h",
                              (Arguments{direction(), unit(), unit(), unit()}), 4,
                              (Accuracy{2e-5, 1.0, "components of a unit vector"}),
-                             LayerStackView stack = CHECK_STACK; AS_SHEET(stack);
-                             const Vec3 wo = CHECK_VECTOR(0);
+                             LayerStackView stack = CHECK_STACK;
+                             AS_SHEET(stack); const Vec3 wo = CHECK_VECTOR(0);
                              const LayerChoice choice = layer_stack_choice(stack, wo.z);
                              int is_delta; const Vec3 wi = layer_stack_sample(
                                                stack, &choice, wo, in[3], in[4], in[5], &is_delta);
                              CHECK_RESULT(0, wi); out[3] = (real)is_delta),
             CHECKED_FUNCTION("layer_stack_through_lobe", "kernels/stack/layer_stack.h",
                              (Arguments{direction(), direction()}), 1, through_lobe,
-                             LayerStackView stack = CHECK_STACK; AS_SHEET(stack);
-                             out[0] = layer_stack_through_lobe(
-                                 stack, vec3(in[3], in[4], -in[5]), CHECK_VECTOR(0))),
+                             LayerStackView stack = CHECK_STACK;
+                             AS_SHEET(stack);
+                             out[0] = layer_stack_through_lobe(stack, vec3(in[3], in[4], -in[5]),
+                                                               CHECK_VECTOR(0))),
             CHECKED_FUNCTION("layer_stack_top", "kernels/stack/layer_stack.h",
                              (Arguments{direction(), direction()}), 1, lobe,
                              const LayerStackView stack = CHECK_STACK;

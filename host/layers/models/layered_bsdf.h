@@ -87,6 +87,7 @@ private:
     /// Choices over sqrt(cos), made when the first direction is asked for: they cost albedos.
     struct Choices;
 
+    static std::shared_ptr<Choices> new_choices();
     bool like_the_last(int band) const;
     void make_models(ClosedModel model);
     void make_emitting(const LayerStack& stack, const WavelengthGrid& bands);

@@ -13,10 +13,6 @@ namespace reradiant {
 
 namespace {
 
-bool is_rough(const StackElement& element) {
-    return std::holds_alternative<SurfaceValues>(element) && scatters(element);
-}
-
 bool slab_scatters(const StackElement& element) {
     return std::holds_alternative<SlabValues>(element) && scatters(element);
 }
@@ -55,7 +51,7 @@ SheetTransmission::SheetTransmission(const StackElements& sheet)
     : whole_(sides_of(sheet)), scatters_(std::any_of(sheet.begin(), sheet.end(), slab_scatters)) {
     const StackElements unscattered = without_scattered(sheet);
     unscattered_ = scatters_ ? sides_of(unscattered) : whole_;
-    if (std::none_of(sheet.begin(), sheet.end(), is_rough)) {
+    if (std::none_of(sheet.begin(), sheet.end(), is_rough_interface)) {
         smooth_ = unscattered;
     } else {
         lobe_ = lobe_through(sheet);

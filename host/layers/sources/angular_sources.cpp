@@ -125,10 +125,6 @@ private:
     std::vector<EmittingSlab> by_size_; ///< of the thinnest cell, of twice its thickness, ...
 };
 
-bool is_rough(const StackElement& element) {
-    return std::holds_alternative<SurfaceValues>(element) && scatters(element);
-}
-
 /// The elements down to the first that scatters, or to the first rough interface.
 template <typename Ends>
 StackElements run_until(const StackElements& stack, const Ends& ends) {
@@ -144,7 +140,7 @@ public:
     ReachedFromAir(const StackElements& stack, const StackCells& cells, const AngularGrid& grid,
                    Eigen::MatrixXd from_cells)
         : breaks_(breaks_in_air(stack)), smooth_(1.0, run_until(stack, scatters), cells),
-          unscattered_(1.0, run_until(stack, is_rough), cells), ior_(grid.ior), fit_(grid) {
+          unscattered_(1.0, run_until(stack, is_rough_interface), cells), ior_(grid.ior), fit_(grid) {
         const Eigen::VectorXd whole = integral_of_cells(grid, from_cells);
         subtract_unscattered(grid, from_cells);
         coefficients_.resize(from_cells.rows(), 0);

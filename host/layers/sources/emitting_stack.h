@@ -2,8 +2,11 @@
 
 #include "host/layers/sources/re_emission.h"
 
+#include "kernels/core/portable.h"
+
 #include <Eigen/Core>
 
+#include <cmath>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -18,6 +21,18 @@ struct AirDirection {
 
     bool operator==(const AirDirection&) const = default;
 };
+
+/// These take a unit vector in the local frame, z = normal, apart: its side, its cosine and side,
+/// and the vector itself as seen from its side.
+inline Side side_of(const kernels::Vec3& w) {
+    return w.z > 0.0 ? Side::Above : Side::Below;
+}
+inline AirDirection air_direction(const kernels::Vec3& w) {
+    return {std::fabs(w.z), side_of(w)};
+}
+inline kernels::Vec3 mirrored_above(const kernels::Vec3& w) {
+    return kernels::vec3(w.x, w.y, std::fabs(w.z));
+}
 
 /// A stack whose slabs hold dyes, at every band.
 struct DyedStack {

@@ -56,8 +56,6 @@ public:
             a.from_below(count_) = part.fluence * (1.0 + part.transmission * down);
             ++count_;
         }
-        a.absorbed_above +=
-            a.transmission * inverse * (part.back * a.absorbed_below + part.absorbed);
         a.absorbed_below = part.absorbed + part.transmission * inverse *
                                                (a.back_below * part.absorbed + a.absorbed_below);
         a.back_above += a.transmission * a.transmission * up;
@@ -121,7 +119,6 @@ RayStack::RayStack(double ior_above, std::span<const StackElement> run,
         } else if (std::holds_alternative<DiffuseValues>(element)) {
             parts_.push_back({Part::Kind::Substrate, media_.size() - 1});
             append(weights_, media_.back() * media_.back());
-            append(depths_, 0.0);
         }
     }
 }
@@ -136,7 +133,6 @@ void RayStack::add_slab(const SlabValues& slab, const DepthCells& cells) {
         const double depth = slab.depth() * cells.share(cell);
         parts_.push_back({Part::Kind::Cell, medium, depth});
         append(weights_, 4.0 * slab.ior * slab.ior);
-        append(depths_, depth);
     }
 }
 

@@ -14,12 +14,12 @@ namespace reradiant {
 /// that do not scatter, all interreflections included. Shares are of a flux that comes from above
 /// or from below; every one is a sum of positive terms, so that none loses digits.
 struct RayResponse {
-    double transmission = 1.0;                         ///< the same in both directions
-    double back_above = 0.0, back_below = 0.0;         ///< share that comes back
-    double absorbed_above = 0.0, absorbed_below = 0.0; ///< by anything
+    double transmission = 1.0;                 ///< the same in both directions
+    double back_above = 0.0, back_below = 0.0; ///< share that comes back
+    double absorbed_below = 0.0;               ///< of what comes from below, by anything
     /// By source: mean fluence in a depth cell per flux, or irradiance on the substrate. By
     /// reciprocity a source of power J sends the flux J x dq / g out on that side, g its
-    /// SourceWeight.
+    /// weight.
     Eigen::VectorXd from_above, from_below;
 };
 
@@ -45,8 +45,6 @@ public:
     Eigen::Index sources() const { return static_cast<Eigen::Index>(weights_.size()); }
     /// g: 4 n^2 of a depth cell, n^2 of the medium above the substrate.
     const Eigen::VectorXd& weights() const { return weights_; }
-    /// Extinction depth of every depth cell, 0 of the substrate.
-    const Eigen::VectorXd& depths() const { return depths_; }
     /// IOR of all media, from above.
     const std::vector<double>& media() const { return media_; }
 
@@ -69,7 +67,7 @@ private:
 
     std::vector<double> media_;
     std::vector<Part> parts_;
-    Eigen::VectorXd weights_, depths_;
+    Eigen::VectorXd weights_;
 };
 
 } // namespace reradiant

@@ -22,4 +22,8 @@ StackElements upside_down(std::span<const StackElement> sheet) {
     return turned;
 }
 
+bool is_rough_interface(const StackElement& element) {
+    return std::holds_alternative<SurfaceValues>(element) && scatters(element);
+}
+
 } // namespace reradiant

@@ -14,4 +14,7 @@ StackElements without_scattered(std::span<const StackElement> stack);
 /// around.
 StackElements upside_down(std::span<const StackElement> sheet);
 
+/// True for an interface that spreads light.
+bool is_rough_interface(const StackElement& element);
+
 } // namespace reradiant
