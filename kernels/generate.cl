@@ -40,8 +40,8 @@ __kernel void generate(KERNEL_SIGNATURE(GENERATE_ARGUMENTS)) {
         const Random4 u = numbers_of_path(&numbers, k);
         const CameraRay ray = camera_ray(render.camera, (real)(own % render.camera.width) + u.b,
                                          (real)(own / render.camera.width) + u.c, u.a, u.d);
-        const PathState state = {own, OF_PATH(uint, sample, k), OF_PATH(uint, phase, k), 0u, -1.0f,
-                                 1.0f, 0.0f, 0u};
+        const PathState state = {
+            own, OF_PATH(uint, sample, k), OF_PATH(uint, phase, k), 0u, -1.0f, 1.0f, 0.0f, 0u};
         rays[first + k] = ray_record(ray.origin, ray.direction, INFINITY);
         paths[first + k] = state;
     }

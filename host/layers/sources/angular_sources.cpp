@@ -140,7 +140,8 @@ public:
     ReachedFromAir(const StackElements& stack, const StackCells& cells, const AngularGrid& grid,
                    Eigen::MatrixXd from_cells)
         : breaks_(breaks_in_air(stack)), smooth_(1.0, run_until(stack, scatters), cells),
-          unscattered_(1.0, run_until(stack, is_rough_interface), cells), ior_(grid.ior), fit_(grid) {
+          unscattered_(1.0, run_until(stack, is_rough_interface), cells), ior_(grid.ior),
+          fit_(grid) {
         const Eigen::VectorXd whole = integral_of_cells(grid, from_cells);
         subtract_unscattered(grid, from_cells);
         coefficients_.resize(from_cells.rows(), 0);
