@@ -22,6 +22,9 @@ struct LobeShape {
     double alpha = 0.0;
     /// Ratio that the lobe is multiplied by (kernels/scatter/facet_shape.h); null: 1.
     std::shared_ptr<const std::vector<float>> table = nullptr;
+    /// A lobe through a sheet, whose table is that of kernels/scatter/through_shape.h: says which
+    /// direction the table takes first, that on the lobe's side or that on the other.
+    enum class Through { No, First, Second } through = Through::No;
     double ior = 0.0; ///< of the medium above a deeper interface; 0: facets in air
     std::vector<LobePassage> passages{};
     std::size_t element = 0; ///< of the stack, that reflects

@@ -206,11 +206,15 @@ typedef struct {
     shared_uint other_side;    ///< of a sheet: the same as seen from below; NO_INDEX: it is opaque
     shared_uint dyes_far;      ///< of a sheet: `dyes` for directions on the other side
     shared_uint through_delta; ///< grey or spectral: weight of the direction straight on
-    shared_uint through_lobe;  ///< grey or spectral: amplitude of the lobe through rough faces
+    shared_uint through_shape; ///< table of through_shape.h, of the lobe through rough faces;
+                               ///< NO_INDEX: all are smooth
+    shared_uint through_first; ///< 1: it takes the direction on this side first
+    shared_uint through_lobe_own, through_lobe_far; ///< grey or spectral: amplitude of that lobe,
+                                                    ///< for directions on each side
     shared_uint through_own, through_far; ///< grey or spectral: product form of what else goes
                                           ///< through, for directions on each side
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 156);
+ASSERT_SIZE(MaterialRecord, 168);
 
 /// Extinctions that distances in a scattering slab are sampled with (walk.h).
 #define WALK_REFERENCES 4

@@ -9,6 +9,7 @@
 #include "host/scene/model/closed_model.h"
 #include "kernels/core/shared.h"
 #include "kernels/scatter/shape_table.h"
+#include "kernels/scatter/through_shape.h"
 #include "reradiant/error.h"
 
 #include <fmt/core.h>
@@ -94,8 +95,9 @@ private:
         plan_.counts.floats *= 2;
         const bool is_rough = !material_.stack.is_smooth();
         plan_.is_straight = !is_rough;
-        plan_.counts.floats += row_;  // a substrate that sends nothing back, for the other side
-        plan_.counts.floats += nodes; // straight on, or the amplitude of a lobe
+        plan_.counts.floats += row_; // a substrate that sends nothing back, for the other side
+        // straight on, or the amplitudes of a lobe and its shape
+        plan_.counts.floats += is_rough ? 2 * nodes + THROUGH_TABLE_SIZE : nodes;
         if (is_rough || material_.stack.scatters())
             plan_.counts.floats += 2 * nodes;
         if (wavelengths_.hero > 0)
