@@ -53,7 +53,8 @@ public:
             plan_walk();
         else
             plan_closed_model();
-        plan_substrate();
+        if (plan_.choice.model != Model::Walk || !material_.stack.is_sheet())
+            plan_substrate();
         if (material_.stack.is_dyed() && plan_.choice.model != Model::Walk)
             plan_dyes();
         return std::move(plan_);
@@ -224,6 +225,12 @@ private:
             plan_.counts.walk_parts += std::holds_alternative<FlakesValues>(stack_[e]) ? 1 : 0;
             plan_walked_surface(surface);
         }
+        if (material_.stack.is_sheet()) {
+            plan_.features.sheets = true;
+            plan_.counts.materials = 2;
+            plan_.counts.walk_parts *= 2;
+            plan_.counts.floats *= 2;
+        }
     }
 
     void plan_slabs() {
@@ -350,7 +357,8 @@ RenderFeatures features_of_model(const Material& material, Model model) {
     RenderFeatures features;
     features.walk = model == Model::Walk;
     if (features.walk)
-        features.walk_layers = static_cast<int>(material.stack.layers.size());
+        features.walk_layers = static_cast<int>(material.stack.layers.size()) +
+                               (material.stack.is_sheet() ? 1 : 0);
     else
         features.lobes = deeper_lobe_count(material, model);
     features.reflectance_image = material.substrate.type != SubstrateType::Conductor &&
