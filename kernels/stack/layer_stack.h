@@ -13,11 +13,11 @@
 #include "kernels/core/shared.h"
 #include "kernels/scatter/facet_shape.h"
 #include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/lobe_ratio.h"
 #include "kernels/scatter/lobe_width.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
 #include "kernels/scatter/oren_nayar_shape.h"
-#include "kernels/scatter/through_shape.h"
 #include "kernels/stack/model_a.h"
 
 KERNELS_BEGIN
@@ -129,11 +129,11 @@ DEVICE_FUNCTION real layer_stack_through_width(LayerStackView stack, real cos_i,
 /// Ratio of that lobe to its facets, for a direction on this side and the mirror image of one on
 /// the far side.
 DEVICE_FUNCTION real layer_stack_through_ratio(LayerStackView stack, Vec3 own, Vec3 far) {
-    GLOBAL_CONST shared_float* table = stack.tables + stack.record.through_shape;
+    GLOBAL_CONST shared_float* table = stack.tables + stack.record.through_ratio;
     const Vec3 first = stack.record.through_first ? own : far;
     const Vec3 second = stack.record.through_first ? far : own;
-    return through_shape_value(table, layer_stack_through_width(stack, first.z, first.z), first,
-                               second);
+    return lobe_ratio_value(table, layer_stack_through_width(stack, first.z, first.z), first,
+                            second);
 }
 
 /// Scalar value of the lobe through rough faces, to be multiplied by its two amplitudes; `wi` lies
@@ -150,7 +150,7 @@ DEVICE_FUNCTION real layer_stack_through_pdf(LayerStackView stack, const LayerCh
                                              Vec3 wo, Vec3 wi) {
     const Vec3 mirrored = layer_stack_mirrored(wi);
     real pdf = layer_stack_probability(choice, CHOICE_THROUGH) * mirrored.z * INV_PI_REAL;
-    if (stack.record.through_shape != NO_INDEX)
+    if (stack.record.through_ratio != NO_INDEX)
         pdf += layer_stack_probability(choice, CHOICE_THROUGH_LOBE) *
                layer_stack_lobe_pdf(MICROFACET_GGX, layer_stack_through_width(stack, wo.z, wo.z),
                                     wo, mirrored);
@@ -259,6 +259,18 @@ DEVICE_FUNCTION real layer_stack_facets(LayerStackView stack, LobeRecord lobe, V
 }
 #endif
 
+/// Ratio of a deeper interface's lobe to its facets, where it has a table.
+#if FEATURE_DEEPER_LOBES
+DEVICE_FUNCTION real layer_stack_lobe_ratio(LayerStackView stack, LobeRecord lobe, Vec3 wi,
+                                            Vec3 wo) {
+    GLOBAL_CONST shared_float* table = stack.tables + lobe.ratio;
+    if (lobe.ratio == NO_INDEX)
+        return REAL(1.0);
+    return lobe_ratio_value(table, layer_stack_lobe_width(stack, lobe, wi.z, wi.z), wi, wo) +
+           lobe_ratio_value(table, layer_stack_lobe_width(stack, lobe, wo.z, wo.z), wo, wi);
+}
+#endif
+
 /// Scalar value of a further lobe, to be multiplied by its two amplitudes (and by what model A
 /// evaluates per lane). 1/sr, no cosine.
 #if FEATURE_DEEPER_LOBES
@@ -273,7 +285,8 @@ DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi
     const LobeRecord record = stack.lobes[lobe];
     if (record.shape != NO_INDEX)
         return layer_stack_facets(stack, record, wi, wo);
-    return microfacet_reflection((int)record.distribution,
+    return layer_stack_lobe_ratio(stack, record, wi, wo) *
+           microfacet_reflection((int)record.distribution,
                                  layer_stack_lobe_width(stack, record, wi.z, wo.z), wi, wo);
 }
 #endif

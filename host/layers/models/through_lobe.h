@@ -11,7 +11,7 @@ namespace reradiant {
 /// The lobe of light that goes through a sheet with rough faces without being scattered in slabs,
 /// as seen from either side. It is the lobe of facets over the half vector of one direction and the
 /// mirror image of the other, as wide as the faces spread light (kernels/scatter/lobe_width.h),
-/// times a tabulated ratio (kernels/scatter/through_shape.h).
+/// times a tabulated ratio (kernels/scatter/lobe_ratio.h).
 struct ThroughLobe {
     LobeShape above, below;
 };
@@ -19,11 +19,10 @@ struct ThroughLobe {
 /// Returns the lobe of a sheet in air that stands for all bands of it; null where all of its faces
 /// are smooth. Its shape is that at the band which absorbs least, scattering left out. Thread-safe.
 ///
-/// Ratios are made by walks between the faces, from the smoother one to the rougher one, whose
-/// facets are connected to all directions whenever light meets them; they hold all light that goes
-/// back and forth. They are made for a sheet nearby, with indices of refraction rounded to 0.05
-/// (0.01 below 1.1), widths and depths to a 16th part of an octave, and kept in memory. Who uses a
-/// lobe scales it to the flux that it must carry.
+/// Ratios (host/layers/models/lobe_ratios.h) are made by walks between the faces of a sheet nearby,
+/// from the smoother one to the rougher one, whose facets are connected to all directions whenever
+/// light meets them; they hold all light that goes back and forth. Who uses a lobe scales it to the
+/// flux that it must carry.
 std::shared_ptr<const ThroughLobe> through_lobe(std::span<const StackElements> bands);
 
 } // namespace reradiant

@@ -2,9 +2,9 @@
 
 #include "host/layers/rough/interface_walk.h"
 #include "kernels/scatter/facet_shape.h"
+#include "kernels/scatter/lobe_ratio.h"
 #include "kernels/scatter/lobe_width.h"
 #include "kernels/scatter/microfacet.h"
-#include "kernels/scatter/through_shape.h"
 
 #include <Eigen/Core>
 
@@ -46,12 +46,21 @@ constexpr LatticeRule lobe_rule{1021, 76}, deeper_rule{4093, 1516};
 double table_ratio(const LobeShape& lobe, const Vec3& wi, const Vec3& wo) {
     if (!lobe.table)
         return 1.0;
-    if (lobe.through == LobeShape::Through::No)
-        return kernels::facet_shape_value(lobe.table->data(), lobe.alpha, wi, wo);
-    const bool is_first = lobe.through == LobeShape::Through::First;
-    const Vec3 &first = is_first ? wi : wo, &second = is_first ? wo : wi;
-    return kernels::through_shape_value(lobe.table->data(), sampling_width(lobe, first.z), first,
-                                        second);
+    const auto ratio = [&](const Vec3& first, const Vec3& second) {
+        return kernels::lobe_ratio_value(lobe.table->data(), sampling_width(lobe, first.z), first,
+                                         second);
+    };
+    switch (lobe.table_kind) {
+    case LobeShape::Table::OwnFirst:
+        return ratio(wi, wo);
+    case LobeShape::Table::OwnSecond:
+        return ratio(wo, wi);
+    case LobeShape::Table::Sum:
+        return ratio(wi, wo) + ratio(wo, wi);
+    case LobeShape::Table::Facets:
+        break;
+    }
+    return kernels::facet_shape_value(lobe.table->data(), lobe.alpha, wi, wo);
 }
 
 /// Share of a unit lobe's flux without Fresnel, one sample of the visible facets of a width: G2 /
@@ -106,7 +115,7 @@ auto key_of(const LobeShape& lobe) {
     std::vector<double> numbers{lobe.alpha, lobe.ior};
     for (const LobePassage& p : lobe.passages)
         numbers.insert(numbers.end(), {p.alpha, p.ior_above, p.ior_below});
-    return std::tuple{lobe.distribution, std::move(numbers), lobe.table, lobe.through};
+    return std::tuple{lobe.distribution, std::move(numbers), lobe.table, lobe.table_kind};
 }
 
 std::shared_ptr<const Eigen::MatrixXd> spread_of(const LobeShape& lobe) {

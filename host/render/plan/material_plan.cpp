@@ -8,8 +8,8 @@
 #include "host/render/tables/substrate_operator.h"
 #include "host/scene/model/closed_model.h"
 #include "kernels/core/shared.h"
+#include "kernels/scatter/lobe_ratio.h"
 #include "kernels/scatter/shape_table.h"
-#include "kernels/scatter/through_shape.h"
 #include "reradiant/error.h"
 
 #include <fmt/core.h>
@@ -98,7 +98,7 @@ private:
         plan_.is_straight = !is_rough;
         plan_.counts.floats += row_; // a substrate that sends nothing back, for the other side
         // straight on, or the amplitudes of a lobe and its shape
-        plan_.counts.floats += is_rough ? 2 * nodes + THROUGH_TABLE_SIZE : nodes;
+        plan_.counts.floats += is_rough ? 2 * nodes + LOBE_RATIO_SIZE : nodes;
         if (is_rough || material_.stack.scatters())
             plan_.counts.floats += 2 * nodes;
         if (wavelengths_.hero > 0)
@@ -205,8 +205,11 @@ private:
     void plan_lobes() {
         plan_.counts.lobes = static_cast<std::uint64_t>(plan_.features.lobes);
         plan_.features.deeper_lobes = plan_.counts.lobes > 0;
-        if (plan_.choice.model == Model::Adding && has_facet_lobe_on_a_side())
-            plan_.counts.floats += SHAPE_TABLE_SIZE;
+        if (plan_.choice.model == Model::Adding) {
+            const std::uint64_t facets = has_facet_lobe_on_a_side() ? 1 : 0;
+            plan_.counts.floats +=
+                facets * SHAPE_TABLE_SIZE + (plan_.counts.lobes - facets) * LOBE_RATIO_SIZE;
+        }
         if (plan_.choice.model == Model::WeidlichWilkie)
             for (const DeeperLobe& lobe : weidlich_wilkie_lobes(stack_))
                 if (std::holds_alternative<SlabValues>(stack_[lobe.element]))
@@ -357,8 +360,8 @@ RenderFeatures features_of_model(const Material& material, Model model) {
     RenderFeatures features;
     features.walk = model == Model::Walk;
     if (features.walk)
-        features.walk_layers = static_cast<int>(material.stack.layers.size()) +
-                               (material.stack.is_sheet() ? 1 : 0);
+        features.walk_layers =
+            static_cast<int>(material.stack.layers.size()) + (material.stack.is_sheet() ? 1 : 0);
     else
         features.lobes = deeper_lobe_count(material, model);
     features.reflectance_image = material.substrate.type != SubstrateType::Conductor &&

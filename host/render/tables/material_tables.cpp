@@ -42,7 +42,7 @@ public:
         const LaneOperator substrate = append_substrate(material_, plan_.choice.model, optics_,
                                                         *plan_.on_cells, lanes_, record_, out_);
         record_.dyes = record_.dyes_far = record_.dye_coupling = NO_INDEX;
-        record_.through_delta = record_.through_shape = NO_INDEX;
+        record_.through_delta = record_.through_ratio = NO_INDEX;
         record_.through_first = 0u;
         record_.through_lobe_own = record_.through_lobe_far = NO_INDEX;
         record_.through_own = record_.through_far = NO_INDEX;
@@ -145,9 +145,12 @@ private:
                             static_cast<std::uint32_t>(kernel_distribution(shapes[l].distribution)),
                             static_cast<std::uint32_t>(
                                 is_model_a() ? lobes[l].part : parts_above(shapes[l].element)),
-                            NO_INDEX, NO_INDEX};
+                            NO_INDEX,
+                            NO_INDEX,
+                            NO_INDEX};
             if (shapes[l].table)
-                lobe.shape = lanes_.append_numbers(*shapes[l].table);
+                (shapes[l].is_between_facets() ? lobe.shape : lobe.ratio) =
+                    lanes_.append_numbers(*shapes[l].table);
             const auto* slab = std::get_if<SlabValues>(&stack_[lobes[l].element]);
             if (is_model_a() && slab) {
                 lobe.alpha = static_cast<float>(slab->anisotropy);
@@ -229,18 +232,16 @@ private:
         record_.through_delta = above.through_delta;
         record_.through_lobe_own = above.through_lobe_far;
         record_.through_lobe_far = above.through_lobe_own;
-        record_.through_shape = above.through_shape;
+        record_.through_ratio = above.through_ratio;
         record_.through_first = 1u - above.through_first;
         record_.through_own = above.through_far;
         record_.through_far = above.through_own;
     }
 
-    void append_through_shape() {
+    void append_through_ratio() {
         const LobeShape& lobe = optics_.any_sheet().lobe(Side::Above);
-        record_.through_first = lobe.through == LobeShape::Through::First ? 1u : 0u;
-        record_.through_shape = lanes_.here();
-        for (const float ratio : *lobe.table)
-            lanes_.append(ratio);
+        record_.through_first = lobe.table_kind == LobeShape::Table::OwnFirst ? 1u : 0u;
+        record_.through_ratio = lanes_.append_numbers(*lobe.table);
     }
 
     void append_through() {
@@ -257,7 +258,7 @@ private:
         if (optics_.any_sheet().has_lobe()) {
             record_.through_lobe_own = lobe(Side::Above);
             record_.through_lobe_far = lobe(Side::Below);
-            append_through_shape();
+            append_through_ratio();
         } else {
             record_.through_delta = nodes([](const SheetTransmission& sheet) {
                 return [&sheet](double c) { return sheet.delta(c); };
