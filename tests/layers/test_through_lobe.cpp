@@ -74,34 +74,35 @@ void expect_as_walked(const Sheet& sheet, double theta_i) {
     }
 }
 
+void expect_the_same_from_both_sides(const Sheet& sheet) {
+    const LayeredBsdf bsdf = adding_of(sheet.stack);
+    const kernels::Vec3 above = direction_deg(35.0), below = direction_deg(130.0, 100.0);
+    const double down = bsdf.eval(above, below)(0, 0), up = bsdf.eval(below, above)(0, 0);
+    EXPECT_GT(down, 0.0) << sheet.name;
+    EXPECT_NEAR(down, up, 1e-12 * down) << sheet.name;
+}
+
+/// The lobe's amplitudes bring all light that goes through.
+void expect_all_light(const Sheet& sheet) {
+    const StackElements elements = stack_at(sheet.stack, 550.0);
+    const SheetTransmission through(elements, through_lobe(std::span(&elements, 1)));
+    for (const Side side : {Side::Above, Side::Below})
+        for (const double c : {0.2, 0.6, 1.0}) {
+            const double whole = through.specular_albedo(c, side);
+            EXPECT_NEAR(through.lobe_albedo(c, side), whole, 0.02 * whole)
+                << sheet.name << ", cosine " << c;
+        }
+}
+
 } // namespace
 
-TEST(ThroughLobe, DirectionsAreThoseOfTheWalk) {
-    for (const Sheet& sheet : sheets())
+// Tables take a second each to make: one test asks for all that there is to know of a sheet.
+TEST(ThroughLobe, IsThatOfTheWalk) {
+    for (const Sheet& sheet : sheets()) {
         for (const double theta_i : thetas)
             expect_as_walked(sheet, theta_i);
-}
-
-TEST(ThroughLobe, IsTheSameFromBothSides) {
-    for (const Sheet& sheet : sheets()) {
-        const LayeredBsdf bsdf = adding_of(sheet.stack);
-        const kernels::Vec3 above = direction_deg(35.0), below = direction_deg(130.0, 100.0);
-        const double down = bsdf.eval(above, below)(0, 0), up = bsdf.eval(below, above)(0, 0);
-        EXPECT_GT(down, 0.0) << sheet.name;
-        EXPECT_NEAR(down, up, 1e-12 * down) << sheet.name;
-    }
-}
-
-TEST(ThroughLobe, HoldsAllLightThatGoesThrough) {
-    for (const Sheet& sheet : sheets()) {
-        const StackElements elements = stack_at(sheet.stack, 550.0);
-        const SheetTransmission through(elements, through_lobe(std::span(&elements, 1)));
-        for (const Side side : {Side::Above, Side::Below})
-            for (const double c : {0.2, 0.6, 1.0}) {
-                const double whole = through.specular_albedo(c, side);
-                EXPECT_NEAR(through.lobe_albedo(c, side), whole, 0.02 * whole)
-                    << sheet.name << ", cosine " << c;
-            }
+        expect_the_same_from_both_sides(sheet);
+        expect_all_light(sheet);
     }
 }
 
