@@ -156,7 +156,7 @@ CheckTables check_tables() {
     tables.material = material();
     const auto stack = layers();
     std::copy(stack.begin(), stack.end(), tables.layers);
-    tables.lobes[0] = {0.3f, 1, CHECK_LAYERS - 1, NO_INDEX, NO_INDEX, NO_INDEX};
+    tables.lobes[0] = {0.3f, 1, CHECK_LAYERS - 1, NO_INDEX, NO_INDEX, NO_INDEX, 0.0f};
     tables.lobes[1] = {0.6f, 0,        1,
                        0,    NO_INDEX, NO_INDEX}; // a slab of anisotropy 0.6 beneath the coat
     fill_textures(tables);

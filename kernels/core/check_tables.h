@@ -18,6 +18,7 @@
 /// shape.
 #define AS_SHEET(stack)                                                                            \
     stack.record.other_side = 0u, stack.record.through_first = 1u,                                 \
+    stack.record.through_width = 0.2f,                                                             \
     stack.record.through_ratio = TABLE_NODES * CHECK_CHOICES + SHAPE_TABLE_SIZE
 #define CHECK_SURFACE                                                                              \
     { (int)in[0] + MICROFACET_BECKMANN, in[1], in[2], 1, 0, 0 }

@@ -155,8 +155,9 @@ typedef struct {
     shared_uint slab;  ///< [2][phase][lane]: optical depth and albedo; NO_INDEX: a rough lobe
     shared_uint shape; ///< table of facet_shape.h that it is multiplied by; NO_INDEX: none
     shared_uint ratio; ///< table of lobe_ratio.h likewise
+    shared_float ratio_width; ///< of the lobe at normal incidence
 } LobeRecord;
-ASSERT_SIZE(LobeRecord, 24);
+ASSERT_SIZE(LobeRecord, 28);
 
 /// MaterialRecord::weidlich_wilkie. Per lane: some interface's IOR depends on wavelength.
 #define MODEL_A 1u
@@ -202,20 +203,21 @@ typedef struct {
                               ///< with no terms, [channel][lane] taken [channel][lane] sent
     shared_uint dye_terms;    ///< 0: entry by entry
     shared_uint dye_channels;
-    shared_uint dyes_shift_up; ///< 1: nothing is sent out below the wavelength that excites it
-    shared_uint is_passed;     ///< 1: shadow rays pass this smooth sheet straight on
-    shared_uint other_side;    ///< of a sheet: the same as seen from below; NO_INDEX: it is opaque
-    shared_uint dyes_far;      ///< of a sheet: `dyes` for directions on the other side
-    shared_uint through_delta; ///< grey or spectral: weight of the direction straight on
-    shared_uint through_ratio; ///< table of lobe_ratio.h, of the lobe through rough faces;
-                               ///< NO_INDEX: all are smooth
-    shared_uint through_first; ///< 1: it takes the direction on this side first
+    shared_uint dyes_shift_up;  ///< 1: nothing is sent out below the wavelength that excites it
+    shared_uint is_passed;      ///< 1: shadow rays pass this smooth sheet straight on
+    shared_uint other_side;     ///< of a sheet: the same as seen from below; NO_INDEX: it is opaque
+    shared_uint dyes_far;       ///< of a sheet: `dyes` for directions on the other side
+    shared_uint through_delta;  ///< grey or spectral: weight of the direction straight on
+    shared_uint through_ratio;  ///< table of lobe_ratio.h, of the lobe through rough faces;
+                                ///< NO_INDEX: all are smooth
+    shared_uint through_first;  ///< 1: it takes the direction on this side first
+    shared_float through_width; ///< of that lobe at normal incidence
     shared_uint through_lobe_own, through_lobe_far; ///< grey or spectral: amplitude of that lobe,
                                                     ///< for directions on each side
     shared_uint through_own, through_far; ///< grey or spectral: product form of what else goes
                                           ///< through, for directions on each side
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 168);
+ASSERT_SIZE(MaterialRecord, 172);
 
 /// Extinctions that distances in a scattering slab are sampled with (walk.h).
 #define WALK_REFERENCES 4

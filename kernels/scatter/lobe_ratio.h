@@ -37,26 +37,39 @@ DEVICE_FUNCTION real lobe_ratio_largest(real cosine) {
            fmax(cosine, square(LOBE_RATIO_LEAST));
 }
 
-/// Position among the nodes of slope, from 0 to 1, for a lobe of a width: they lie closer where the
-/// lobe is, and go as the logarithm of the slope beyond.
-DEVICE_FUNCTION real lobe_ratio_position(real width, real cosine, real slope) {
-    return log(REAL(1.0) + slope / width) / log(REAL(1.0) + lobe_ratio_largest(cosine) / width);
+/// Slope of the half vector that is half way among the nodes where the largest one is far, over the
+/// width of the lobe at normal incidence.
+#define LOBE_RATIO_MIDDLE REAL(8.0)
+
+/// Place of half the nodes among slopes over the largest, unit 1.
+DEVICE_FUNCTION real lobe_ratio_middle(real width, real cosine) {
+    return LOBE_RATIO_MIDDLE * width / lobe_ratio_largest(cosine);
 }
 
-/// Returns the ratio, unit 1; `width`: that of the lobe from the first direction, `own`, to its
-/// mirror direction.
+/// Angle whose cosine is given, over pi, to 3e-5 (Abramowitz and Stegun 1964, 4.4.45).
+DEVICE_FUNCTION real lobe_ratio_azimuth(real cosine) {
+    const real x = fmin(fabs(cosine), REAL(1.0));
+    const real angle =
+        sqrt(REAL(1.0) - x) *
+        (REAL(1.5707288) + x * (REAL(-0.2121144) + x * (REAL(0.0742610) - x * REAL(0.0187293))));
+    return INV_PI_REAL * (cosine < REAL(0.0) ? PI_REAL - angle : angle);
+}
+
+/// Returns the ratio, unit 1; `width`: that of the lobe at normal incidence.
 DEVICE_FUNCTION real lobe_ratio_value(GLOBAL_CONST shared_float* table, real width, Vec3 own,
                                       Vec3 other) {
     const Vec3 sum = vec3_add(own, other);
-    const real across = sqrt(sum.x * sum.x + sum.y * sum.y);
-    const real slope = across / fmax(sum.z, REAL(1e-15));
-    const real along = own.x * sum.x + own.y * sum.y, beside = own.x * sum.y - own.y * sum.x;
+    const real across2 = sum.x * sum.x + sum.y * sum.y, own2 = own.x * own.x + own.y * own.y;
+    const real slope = sqrt(across2) / fmax(sum.z, REAL(1e-15));
+    const real along = own.x * sum.x + own.y * sum.y;
+    const real u = fmin(slope / lobe_ratio_largest(own.z), REAL(1.0));
+    const real k = lobe_ratio_middle(width, own.z);
     const ShapePlace c = lobe_ratio_cosine(own.z);
-    const ShapePlace s =
-        shape_place(lobe_ratio_position(width, own.z, slope) * (real)(LOBE_RATIO_SLOPES - 1u),
-                    LOBE_RATIO_SLOPES);
+    const ShapePlace s = shape_place(u * (REAL(1.0) + k) / (u + k) * (real)(LOBE_RATIO_SLOPES - 1u),
+                                     LOBE_RATIO_SLOPES);
     const ShapePlace a =
-        shape_place(fabs(atan2(beside, along)) * INV_PI_REAL * (real)(LOBE_RATIO_AZIMUTHS - 1u),
+        shape_place(lobe_ratio_azimuth(along / sqrt(fmax(across2 * own2, REAL(1e-30)))) *
+                        (real)(LOBE_RATIO_AZIMUTHS - 1u),
                     LOBE_RATIO_AZIMUTHS);
     real value = REAL(0.0);
     for (uint corner = 0u; corner < 4u; ++corner) {

@@ -132,8 +132,7 @@ DEVICE_FUNCTION real layer_stack_through_ratio(LayerStackView stack, Vec3 own, V
     GLOBAL_CONST shared_float* table = stack.tables + stack.record.through_ratio;
     const Vec3 first = stack.record.through_first ? own : far;
     const Vec3 second = stack.record.through_first ? far : own;
-    return lobe_ratio_value(table, layer_stack_through_width(stack, first.z, first.z), first,
-                            second);
+    return lobe_ratio_value(table, stack.record.through_width, first, second);
 }
 
 /// Scalar value of the lobe through rough faces, to be multiplied by its two amplitudes; `wi` lies
@@ -266,8 +265,8 @@ DEVICE_FUNCTION real layer_stack_lobe_ratio(LayerStackView stack, LobeRecord lob
     GLOBAL_CONST shared_float* table = stack.tables + lobe.ratio;
     if (lobe.ratio == NO_INDEX)
         return REAL(1.0);
-    return lobe_ratio_value(table, layer_stack_lobe_width(stack, lobe, wi.z, wi.z), wi, wo) +
-           lobe_ratio_value(table, layer_stack_lobe_width(stack, lobe, wo.z, wo.z), wo, wi);
+    return lobe_ratio_value(table, lobe.ratio_width, wi, wo) +
+           lobe_ratio_value(table, lobe.ratio_width, wo, wi);
 }
 #endif
 

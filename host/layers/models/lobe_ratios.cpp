@@ -13,6 +13,7 @@
 #include <map>
 #include <mutex>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 namespace reradiant {
@@ -38,7 +39,8 @@ Vec3 direction_at_node(std::size_t node) {
 Vec3 direction_at_node(const Vec3& own, double width, std::size_t slope, std::size_t azimuth) {
     const double x = static_cast<double>(slope) / (slopes - 1);
     const double most = kernels::lobe_ratio_largest(own.z);
-    const double m = width * std::expm1(x * std::log1p(most / width));
+    const double k = kernels::lobe_ratio_middle(width, own.z);
+    const double m = most * k * x / (1.0 + k - x);
     const double phi = std::numbers::pi * static_cast<double>(azimuth) / (azimuths - 1);
     const Vec3 h =
         kernels::vec3_normalise(kernels::vec3(m * std::cos(phi), m * std::sin(phi), 1.0));
@@ -52,7 +54,7 @@ struct Targets {
     std::vector<std::size_t> nodes; ///< in the table's part for the cosine
 
     Targets(const LobeShape& lobe, const Vec3& own) {
-        const double width = sampling_width(lobe, own.z);
+        const double width = sampling_width(lobe, 1.0);
         for (std::size_t node = 0; node < slopes * azimuths; ++node) {
             const Vec3 w = direction_at_node(own, width, node / azimuths, node % azimuths);
             if (!(w.z > least_cosine))
@@ -79,6 +81,12 @@ double mean_of(const std::vector<std::vector<double>>& sums, std::size_t target)
     return sum / walks;
 }
 
+/// At normal incidence all azimuths are the same.
+void average_azimuths(std::vector<double>& ratios) {
+    for (auto row = ratios.begin(); row != ratios.end(); row += azimuths)
+        std::fill_n(row, azimuths, std::accumulate(row, row + azimuths, 0.0) / azimuths);
+}
+
 /// Ratios of light from one node of cosine: [slope][azimuth]. Beneath the horizon a slope takes the
 /// ratio of the next smaller one.
 std::vector<double> ratios_from(const AimedLobeWalk& aimed, const LobeShape& lobe,
@@ -100,6 +108,8 @@ std::vector<double> ratios_from(const AimedLobeWalk& aimed, const LobeShape& lob
     for (std::size_t t = 0; t < ratios.size(); ++t)
         if (ratios[t] < 0.0)
             ratios[t] = t >= azimuths ? ratios[t - azimuths] : 0.0;
+    if (own.x == 0.0)
+        average_azimuths(ratios);
     return ratios;
 }
 

@@ -47,7 +47,7 @@ double table_ratio(const LobeShape& lobe, const Vec3& wi, const Vec3& wo) {
     if (!lobe.table)
         return 1.0;
     const auto ratio = [&](const Vec3& first, const Vec3& second) {
-        return kernels::lobe_ratio_value(lobe.table->data(), sampling_width(lobe, first.z), first,
+        return kernels::lobe_ratio_value(lobe.table->data(), sampling_width(lobe, 1.0), first,
                                          second);
     };
     switch (lobe.table_kind) {

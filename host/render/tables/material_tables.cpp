@@ -147,10 +147,13 @@ private:
                                 is_model_a() ? lobes[l].part : parts_above(shapes[l].element)),
                             NO_INDEX,
                             NO_INDEX,
-                            NO_INDEX};
+                            NO_INDEX,
+                            0.0f};
             if (shapes[l].table)
                 (shapes[l].is_between_facets() ? lobe.shape : lobe.ratio) =
                     lanes_.append_numbers(*shapes[l].table);
+            if (lobe.ratio != NO_INDEX)
+                lobe.ratio_width = static_cast<float>(sampling_width(shapes[l], 1.0));
             const auto* slab = std::get_if<SlabValues>(&stack_[lobes[l].element]);
             if (is_model_a() && slab) {
                 lobe.alpha = static_cast<float>(slab->anisotropy);
@@ -233,6 +236,7 @@ private:
         record_.through_lobe_own = above.through_lobe_far;
         record_.through_lobe_far = above.through_lobe_own;
         record_.through_ratio = above.through_ratio;
+        record_.through_width = above.through_width;
         record_.through_first = 1u - above.through_first;
         record_.through_own = above.through_far;
         record_.through_far = above.through_own;
@@ -241,6 +245,7 @@ private:
     void append_through_ratio() {
         const LobeShape& lobe = optics_.any_sheet().lobe(Side::Above);
         record_.through_first = lobe.table_kind == LobeShape::Table::OwnFirst ? 1u : 0u;
+        record_.through_width = static_cast<float>(sampling_width(lobe, 1.0));
         record_.through_ratio = lanes_.append_numbers(*lobe.table);
     }
 
