@@ -24,6 +24,8 @@ namespace {
 
 constexpr int most_film_size = 4096;
 constexpr int default_film_size = 96;
+const std::vector<std::string> measure_keys{"theta_i_deg", "theta_o_deg", "phi_deg",
+                                            "illuminants", "model",       "samples"};
 
 /// Reads one STUDY.toml.
 class StudyReader {
@@ -81,10 +83,9 @@ private:
     }
 
     void read_measuring() {
-        const TableReader reader = root_.table("measure", {"theta_i_deg", "theta_o_deg", "phi_deg",
-                                                           "illuminants", "model", "samples"});
+        const TableReader reader = root_.table("measure", measure_keys);
         StudyMeasuring measuring;
-        const NumberRange polar{.low = 0.0, .high = 90.0, .high_is_allowed = false};
+        const NumberRange polar = NumberRange::within(0.0, 180.0);
         const auto angles = [&](const char* key, const NumberRange& range,
                                 std::vector<double>& values) {
             if (!reader.has(key))
@@ -97,6 +98,11 @@ private:
         angles("theta_i_deg", polar, measuring.theta_i_deg);
         angles("theta_o_deg", polar, measuring.theta_o_deg);
         angles("phi_deg", NumberRange::within(-360.0, 360.0), measuring.phi_deg);
+        for (const auto& [key, values] : {std::pair("theta_i_deg", &measuring.theta_i_deg),
+                                          std::pair("theta_o_deg", &measuring.theta_o_deg)})
+            if (std::find(values->begin(), values->end(), 90.0) != values->end())
+                reader.fail(key, fmt::format("{} of 90 degrees is along the surface", key),
+                            "give less, or of a sheet's far side more");
         measuring.theta_i_given = reader.has("theta_i_deg");
         measuring.illuminants_given = reader.has("illuminants");
         if (measuring.illuminants_given)
@@ -143,8 +149,23 @@ private:
             choose_material(scene);
         if (study_.measuring)
             for (const Material& material : scene.materials)
-                if (material.name == study_.material)
-                    refuse_measured_sheet(material, root_.position_of_key("measure"));
+                if (material.name == study_.material && !material.stack.is_sheet())
+                    refuse_far_side(*study_.measuring);
+    }
+
+    /// What is opaque has no far side to be lit or seen from.
+    void refuse_far_side(const StudyMeasuring& measuring) const {
+        const TableReader reader = root_.table("measure", measure_keys);
+        for (const auto& [key, angles] : {std::pair("theta_i_deg", &measuring.theta_i_deg),
+                                          std::pair("theta_o_deg", &measuring.theta_o_deg)})
+            for (const double angle : *angles)
+                if (angle > 90.0)
+                    reader.fail(
+                        key,
+                        fmt::format("{} of {:g} degrees lies beneath the material, which is opaque",
+                                    key, angle),
+                        "angles from the normal lie between 0 and below 90 degrees; a sheet "
+                        "(substrate type \"none\") has two sides");
     }
 
     /// A file that a key names; input Error at the key when it is not there.
@@ -215,13 +236,6 @@ std::vector<std::size_t> Study::cell_values(std::size_t cell) const {
         cell /= sweeps[k].values.size();
     }
     return indices;
-}
-
-void refuse_measured_sheet(const Material& material, const SourcePosition& at) {
-    if (material.stack.is_sheet())
-        throw_input_error(at,
-                          "a study measures what is reflected, and a sheet transmits light as well",
-                          "leave [measure] out, or use `reradiant measure` for what a sheet does");
 }
 
 Study load_study(const fs::path& file) {
