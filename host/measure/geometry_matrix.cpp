@@ -120,7 +120,7 @@ Eigen::MatrixXd by_closed_model(const Material& material, SubstrateValues substr
         is_diffusely_lit && !runs_backwards ? surface.diffusely_lit(at) : reflected(surface, at);
     for (int band = 0; band < bands.count && !geometry.specular_included; ++band)
         values(band, band) -=
-            surface.at(band).delta(at.cosine) + into_port(surface.at(band), theta);
+            surface.at(band).delta(at.cosine) + into_port(surface.unscattered_at(band), theta);
     return runs_backwards ? Eigen::MatrixXd(values.transpose()) : values;
 }
 

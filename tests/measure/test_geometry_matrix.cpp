@@ -326,6 +326,15 @@ TEST(GeometryMatrix, DyesAreLitFromEverywhere) {
         }
 }
 
+// What slabs scatter is no specular light, so that the port takes none of it away. Clouds are
+// computed on cells of direction: 1e-5.
+TEST(GeometryMatrix, CloudyDyesAreLitFromEverywhere) {
+    LayerStack cloudy = dyed_slab(1.5);
+    cloudy.layers[0].scattering_coefficient = Spectrum::constant(2.0);
+    for (const Material& material : {over_stokes_shift(cloudy), sheet_of(cloudy)})
+        EXPECT_LT(largest_error(factors(material, "de/8"), by_quadrature(material)), 1e-5);
+}
+
 TEST(GeometryMatrix, WalksDoNotExcludeSpecularLight) {
     Material walked = sheet_of({});
     walked.stack.layers.emplace_back().flakes = Flakes{0.2, {}};

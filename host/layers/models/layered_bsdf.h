@@ -37,6 +37,8 @@ public:
     bool is_sheet() const { return !sheets_.empty(); }
     /// The model at a band, of a sheet as seen from above.
     const StackBsdf& at(int band) const { return whole(band, Side::Above); }
+    /// The same without what slabs scatter.
+    const StackBsdf& unscattered_at(int band) const { return unscattered(band, Side::Above); }
     /// (bands, bands), rows = emission: zero where no light can go from one band to another.
     const Eigen::MatrixXd& coupling() const { return coupling_; }
     /// The dyes' own light; null where no slab holds any.
