@@ -103,6 +103,21 @@ TEST_F(Sweeps, ConcentrationsAndThicknessOfDyedLayersAreSwept) {
     EXPECT_EQ(layer("parameter = \"thickness\"\nvalues = [1, 3]").thickness, 3.0);
 }
 
+// Spectra are then warned about on these bands alone.
+TEST_F(Sweeps, WhatIsOnlyMeasuredHasTheBandsOfItsMatrices) {
+    put("p.csv", "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
+                 "nm,400,500\n400,0.3,0\n500,0.2,0.5\n");
+    put("shares.toml", "[material]\n[[material.layer]]\nior = 1.5\nfluorophores = [ { absorption = "
+                       "1, shares = { file = \"p.csv\" } } ]\n"
+                       "[material.substrate]\ntype = \"none\"\n");
+    const std::string shares = "[study]\nmaterial = \"shares.toml\"\n";
+    const std::string sweep = "[[sweep]]\nparameter = \"thickness\"\nvalues = [1, 2]\n";
+    const Study measured = load(shares + "[measure]\n" + sweep);
+    const Study rendered = load(shares + "[measure]\n[render]\n" + sweep);
+    EXPECT_EQ(scene_with(measured, {}).film.bands, (WavelengthGrid{400.0, 100.0, 2}));
+    EXPECT_FALSE(scene_with(rendered, {}).film.bands.has_value());
+}
+
 // Two equal coats are computed as one, and each can be swept by itself.
 TEST_F(Sweeps, LayersAreCountedAsTheyAreWritten) {
     const std::string coat = "[[material.layer]]\nior = 1.5\nfluorophores = [ { absorption = 1, "

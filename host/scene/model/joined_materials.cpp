@@ -18,8 +18,8 @@ void join_and_tell(const std::vector<Material*>& materials) {
         return;
     const Material& first = *materials.front();
     const std::size_t left = first.stack.layers.size();
-    logging::info("{}: neighbouring layers of \"{}\" are one medium: {} of {} are computed",
-                  first.position.text(), first.name, left, left + lost);
+    logging::debug("{}: neighbouring layers of \"{}\" are one medium: {} of {} are computed",
+                   first.position.text(), first.name, left, left + lost);
 }
 
 /// Materials of a surface at the levels of its textures.

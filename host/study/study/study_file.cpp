@@ -1,6 +1,8 @@
 #include "host/study/study/study_file.h"
 
+#include "host/base/quiet_log.h"
 #include "host/scene/document/load_state.h"
+#include "host/scene/model/matrix_grids.h"
 #include "host/scene/toml/scene_table.h"
 #include "host/study/study/sample_scene.h"
 #include "host/study/study/sweep_apply.h"
@@ -144,6 +146,8 @@ private:
             study_.base["film"].as_table()->insert_or_assign("width", width_);
             study_.base["film"].as_table()->insert_or_assign("height", height_);
         }
+        if (study_.is_sample && study_.measuring && !study_.rendering)
+            set_measured_bands();
         const Scene scene = scene_with(study_, {}); // refuses what is wrong in itself
         if (has_scene)
             choose_material(scene);
@@ -151,6 +155,19 @@ private:
             for (const Material& material : scene.materials)
                 if (material.name == study_.material && !material.stack.is_sheet())
                     refuse_far_side(*study_.measuring);
+    }
+
+    /// Where nothing is rendered, spectra are used on the bands that are measured: those of the
+    /// material's matrices, if it has any.
+    void set_measured_bands() {
+        const QuietLog quiet;
+        const Scene scene = scene_with(study_, {});
+        const auto grid = common_grid(matrices_of(scene.materials.front()));
+        if (grid)
+            study_.base["film"].as_table()->insert_or_assign("bands_nm",
+                                                             toml::table{{"from", grid->from_nm},
+                                                                         {"to", grid->to_nm()},
+                                                                         {"step", grid->step_nm}});
     }
 
     /// What is opaque has no far side to be lit or seen from.

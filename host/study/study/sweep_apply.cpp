@@ -1,6 +1,5 @@
 #include "host/study/study/sweep_apply.h"
 
-#include "host/base/quiet_log.h"
 #include "host/scene/document/table_reader.h"
 #include "host/scene/model/joined_materials.h"
 #include "host/scene/toml/scene_table.h"
@@ -169,7 +168,6 @@ Scene scene_with(const Study& study, const std::vector<ChosenValue>& values) {
     Scene scene = scene_as_written(table, study.base_file);
     for (const ChosenValue& chosen : values)
         apply_to_scene(scene, study.material, chosen);
-    const QuietLog quiet; // what is computed as one is said where the material stands by itself
     join_layers(scene);
     return scene;
 }
