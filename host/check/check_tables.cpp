@@ -133,6 +133,11 @@ void fill_shape(CheckTables& tables) {
                     0.02f + 0.002f * static_cast<float>(i * o) + 0.001f * static_cast<float>(s * s);
 }
 
+void fill_ratio(CheckTables& tables) {
+    for (std::size_t i = 0; i < LOBE_RATIO_SIZE; ++i)
+        tables.ratio[i] = 1.0f + 0.3f * static_cast<float>(std::sin(0.01 * static_cast<double>(i)));
+}
+
 void fill_lanes(CheckTables& tables) {
     for (int i = 0; i < 2 * CHECK_RANK * LANES; ++i)
         tables.factors[i] = 0.02f + 0.01f * static_cast<float>(std::sin(0.37 * i));
@@ -151,14 +156,16 @@ CheckTables check_tables() {
     tables.material = material();
     const auto stack = layers();
     std::copy(stack.begin(), stack.end(), tables.layers);
-    tables.lobes[0] = {0.3f, 1, CHECK_LAYERS - 1, NO_INDEX, NO_INDEX};
-    tables.lobes[1] = {0.6f, 0, 1, 0, NO_INDEX}; // a slab of anisotropy 0.6 beneath the coat
+    tables.lobes[0] = {0.3f, 1, CHECK_LAYERS - 1, NO_INDEX, NO_INDEX, NO_INDEX};
+    tables.lobes[1] = {0.6f, 0,        1,
+                       0,    NO_INDEX, NO_INDEX}; // a slab of anisotropy 0.6 beneath the coat
     fill_textures(tables);
     fill_lights(tables);
     fill_camera(tables.camera);
     fill_environment(tables);
     fill_choice(tables);
     fill_shape(tables);
+    fill_ratio(tables);
     fill_lanes(tables);
     return tables;
 }

@@ -20,8 +20,13 @@ struct LobePassage {
 struct LobeShape {
     Distribution distribution = Distribution::Ggx;
     double alpha = 0.0;
-    /// Ratio that the lobe is multiplied by (kernels/scatter/facet_shape.h); null: 1.
+    /// Ratio that the lobe is multiplied by; null: 1.
     std::shared_ptr<const std::vector<float>> table = nullptr;
+    /// What the table is: of light between facets (kernels/scatter/facet_shape.h), or else one of
+    /// kernels/scatter/lobe_ratio.h, which takes the direction on the lobe's side first or second,
+    /// or is added up over both.
+    enum class Table { Facets, OwnFirst, OwnSecond, Sum } table_kind = Table::Facets;
+    bool is_between_facets() const { return table && table_kind == Table::Facets; }
     double ior = 0.0; ///< of the medium above a deeper interface; 0: facets in air
     std::vector<LobePassage> passages{};
     std::size_t element = 0; ///< of the stack, that reflects

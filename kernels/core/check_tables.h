@@ -5,7 +5,7 @@
 
 #include "kernels/core/features.h"
 #include "kernels/core/shared.h"
-#include "kernels/scatter/facet_shape.h"
+#include "kernels/scatter/lobe_ratio.h"
 
 /// Three of a checked function's arguments, or of its results, as a vector.
 #define CHECK_VECTOR(k) vec3(in[k], in[(k) + 1], in[(k) + 2])
@@ -14,8 +14,11 @@
 /// The tables' material, and a surface of Smith's kind by two arguments' distribution, alpha, IOR.
 #define CHECK_STACK                                                                                \
     { tables->material, tables->layers, tables->lobes, tables->choice }
-/// Makes a view of it that of a sheet with rough faces.
-#define AS_SHEET(stack) stack.record.other_side = stack.record.through_lobe = 0u
+/// Makes a view of it that of a sheet with rough faces, whose ratio lies behind the choices and the
+/// shape.
+#define AS_SHEET(stack)                                                                            \
+    stack.record.other_side = 0u, stack.record.through_first = 1u,                                 \
+    stack.record.through_ratio = TABLE_NODES * CHECK_CHOICES + SHAPE_TABLE_SIZE
 #define CHECK_SURFACE                                                                              \
     { (int)in[0] + MICROFACET_BECKMANN, in[1], in[2], 1, 0, 0 }
 
@@ -43,6 +46,7 @@ typedef struct {
     EnvironmentRecord environment; ///< offsets into `image`
     shared_float choice[TABLE_NODES * CHECK_CHOICES];
     shared_float shape[SHAPE_TABLE_SIZE];
+    shared_float ratio[LOBE_RATIO_SIZE];
     shared_float image[5 * CHECK_IMAGE_TEXELS + CHECK_IMAGE_HEIGHT];
     shared_float factors[2 * CHECK_RANK * LANES];
     shared_float dense[LANES * LANES];

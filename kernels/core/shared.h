@@ -154,8 +154,9 @@ typedef struct {
     shared_uint layer; ///< index within the material's layers; a slab's: of what lies above it
     shared_uint slab;  ///< [2][phase][lane]: optical depth and albedo; NO_INDEX: a rough lobe
     shared_uint shape; ///< table of facet_shape.h that it is multiplied by; NO_INDEX: none
+    shared_uint ratio; ///< table of lobe_ratio.h likewise
 } LobeRecord;
-ASSERT_SIZE(LobeRecord, 20);
+ASSERT_SIZE(LobeRecord, 24);
 
 /// MaterialRecord::weidlich_wilkie. Per lane: some interface's IOR depends on wavelength.
 #define MODEL_A 1u
@@ -206,11 +207,15 @@ typedef struct {
     shared_uint other_side;    ///< of a sheet: the same as seen from below; NO_INDEX: it is opaque
     shared_uint dyes_far;      ///< of a sheet: `dyes` for directions on the other side
     shared_uint through_delta; ///< grey or spectral: weight of the direction straight on
-    shared_uint through_lobe;  ///< grey or spectral: amplitude of the lobe through rough faces
+    shared_uint through_ratio; ///< table of lobe_ratio.h, of the lobe through rough faces;
+                               ///< NO_INDEX: all are smooth
+    shared_uint through_first; ///< 1: it takes the direction on this side first
+    shared_uint through_lobe_own, through_lobe_far; ///< grey or spectral: amplitude of that lobe,
+                                                    ///< for directions on each side
     shared_uint through_own, through_far; ///< grey or spectral: product form of what else goes
                                           ///< through, for directions on each side
 } MaterialRecord;
-ASSERT_SIZE(MaterialRecord, 156);
+ASSERT_SIZE(MaterialRecord, 168);
 
 /// Extinctions that distances in a scattering slab are sampled with (walk.h).
 #define WALK_REFERENCES 4

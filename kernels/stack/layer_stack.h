@@ -13,6 +13,7 @@
 #include "kernels/core/shared.h"
 #include "kernels/scatter/facet_shape.h"
 #include "kernels/scatter/fresnel.h"
+#include "kernels/scatter/lobe_ratio.h"
 #include "kernels/scatter/lobe_width.h"
 #include "kernels/scatter/microfacet.h"
 #include "kernels/scatter/oren_nayar.h"
@@ -105,40 +106,43 @@ DEVICE_FUNCTION Vec3 layer_stack_mirrored(Vec3 w) {
     return vec3(w.x, w.y, fabs(w.z));
 }
 
-/// Distribution of a sheet's first rough face.
-DEVICE_FUNCTION int layer_stack_through_distribution(LayerStackView stack) {
-    for (uint l = 0u; l < stack.record.layer_count; ++l)
-        if (stack.layers[l].alpha > 0.0f)
-            return (int)stack.layers[l].distribution;
-    return MICROFACET_GGX;
-}
-
 /// Width of the lobe through a sheet's rough faces, each of which light passes once: half a passage
 /// for either direction.
 DEVICE_FUNCTION real layer_stack_through_width(LayerStackView stack, real cos_i, real cos_o) {
     const real sin2_i = (REAL(1.0) - cos_i) * (REAL(1.0) + cos_i);
     const real sin2_o = (REAL(1.0) - cos_o) * (REAL(1.0) + cos_o);
-    const int distribution = layer_stack_through_distribution(stack);
     real ior = REAL(1.0), terms = REAL(0.0);
     for (uint l = 0u; l < stack.record.layer_count; ++l) {
         const LayerRecord face = stack.layers[l];
         const real below = ior * face.eta;
         if (face.alpha > 0.0f)
             terms +=
-                REAL(0.5) *
-                (lobe_width_term(distribution, lobe_width_passage(face.alpha, ior, below, sin2_i)) +
-                 lobe_width_term(distribution, lobe_width_passage(face.alpha, ior, below, sin2_o)));
+                REAL(0.5) * (lobe_width_term(MICROFACET_GGX,
+                                             lobe_width_passage(face.alpha, ior, below, sin2_i)) +
+                             lobe_width_term(MICROFACET_GGX,
+                                             lobe_width_passage(face.alpha, ior, below, sin2_o)));
         ior = below;
     }
-    return lobe_width(distribution, terms, cos_i, cos_o);
+    return lobe_width(MICROFACET_GGX, terms, cos_i, cos_o);
+}
+
+/// Ratio of that lobe to its facets, for a direction on this side and the mirror image of one on
+/// the far side.
+DEVICE_FUNCTION real layer_stack_through_ratio(LayerStackView stack, Vec3 own, Vec3 far) {
+    GLOBAL_CONST shared_float* table = stack.tables + stack.record.through_ratio;
+    const Vec3 first = stack.record.through_first ? own : far;
+    const Vec3 second = stack.record.through_first ? far : own;
+    return lobe_ratio_value(table, layer_stack_through_width(stack, first.z, first.z), first,
+                            second);
 }
 
 /// Scalar value of the lobe through rough faces, to be multiplied by its two amplitudes; `wi` lies
 /// on the far side.
 DEVICE_FUNCTION real layer_stack_through_lobe(LayerStackView stack, Vec3 wi, Vec3 wo) {
     const Vec3 mirrored = layer_stack_mirrored(wi);
-    return microfacet_reflection(layer_stack_through_distribution(stack),
-                                 layer_stack_through_width(stack, mirrored.z, wo.z), mirrored, wo);
+    const real width = layer_stack_through_width(stack, mirrored.z, wo.z);
+    return microfacet_reflection(MICROFACET_GGX, width, mirrored, wo) *
+           layer_stack_through_ratio(stack, wo, mirrored);
 }
 
 /// Pdf of a direction on the far side.
@@ -146,10 +150,10 @@ DEVICE_FUNCTION real layer_stack_through_pdf(LayerStackView stack, const LayerCh
                                              Vec3 wo, Vec3 wi) {
     const Vec3 mirrored = layer_stack_mirrored(wi);
     real pdf = layer_stack_probability(choice, CHOICE_THROUGH) * mirrored.z * INV_PI_REAL;
-    if (stack.record.through_lobe != NO_INDEX)
+    if (stack.record.through_ratio != NO_INDEX)
         pdf += layer_stack_probability(choice, CHOICE_THROUGH_LOBE) *
-               layer_stack_lobe_pdf(layer_stack_through_distribution(stack),
-                                    layer_stack_through_width(stack, wo.z, wo.z), wo, mirrored);
+               layer_stack_lobe_pdf(MICROFACET_GGX, layer_stack_through_width(stack, wo.z, wo.z),
+                                    wo, mirrored);
     return pdf;
 }
 #endif
@@ -199,8 +203,8 @@ DEVICE_FUNCTION Vec3 layer_stack_sample_through(LayerStackView stack, const Laye
     }
     Vec3 wi = sampling_cosine(u1, u2);
     if (u0 < choice->cumulative[CHOICE_THROUGH_LOBE])
-        wi = layer_stack_sample_lobe(layer_stack_through_distribution(stack),
-                                     layer_stack_through_width(stack, wo.z, wo.z), wo, u1, u2);
+        wi = layer_stack_sample_lobe(MICROFACET_GGX, layer_stack_through_width(stack, wo.z, wo.z),
+                                     wo, u1, u2);
     return vec3(wi.x, wi.y, -fmax(wi.z, REAL(0.0)));
 }
 #endif
@@ -255,6 +259,18 @@ DEVICE_FUNCTION real layer_stack_facets(LayerStackView stack, LobeRecord lobe, V
 }
 #endif
 
+/// Ratio of a deeper interface's lobe to its facets, where it has a table.
+#if FEATURE_DEEPER_LOBES
+DEVICE_FUNCTION real layer_stack_lobe_ratio(LayerStackView stack, LobeRecord lobe, Vec3 wi,
+                                            Vec3 wo) {
+    GLOBAL_CONST shared_float* table = stack.tables + lobe.ratio;
+    if (lobe.ratio == NO_INDEX)
+        return REAL(1.0);
+    return lobe_ratio_value(table, layer_stack_lobe_width(stack, lobe, wi.z, wi.z), wi, wo) +
+           lobe_ratio_value(table, layer_stack_lobe_width(stack, lobe, wo.z, wo.z), wo, wi);
+}
+#endif
+
 /// Scalar value of a further lobe, to be multiplied by its two amplitudes (and by what model A
 /// evaluates per lane). 1/sr, no cosine.
 #if FEATURE_DEEPER_LOBES
@@ -269,7 +285,8 @@ DEVICE_FUNCTION real layer_stack_deeper(LayerStackView stack, uint lobe, Vec3 wi
     const LobeRecord record = stack.lobes[lobe];
     if (record.shape != NO_INDEX)
         return layer_stack_facets(stack, record, wi, wo);
-    return microfacet_reflection((int)record.distribution,
+    return layer_stack_lobe_ratio(stack, record, wi, wo) *
+           microfacet_reflection((int)record.distribution,
                                  layer_stack_lobe_width(stack, record, wi.z, wo.z), wi, wo);
 }
 #endif

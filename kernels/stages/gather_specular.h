@@ -138,8 +138,8 @@ void gather_through(const GatherContext* context, DirectionRecord d, TableStenci
         if (d.delta > 0.0f && m.through_delta != NO_INDEX)
             through += d.delta * stack_lookup(context, m.through_delta, so, c);
         if (d.top > 0.0f)
-            through += d.top * stack_lookup(context, m.through_lobe, si, c) *
-                       stack_lookup(context, m.through_lobe, so, c);
+            through += d.top * stack_lookup(context, m.through_lobe_far, si, c) *
+                       stack_lookup(context, m.through_lobe_own, so, c);
         if (d.residual > 0.0f && m.through_own != NO_INDEX)
             through += d.residual * stack_lookup(context, m.through_far, si, c) *
                        stack_lookup(context, m.through_own, so, c);

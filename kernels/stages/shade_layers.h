@@ -22,7 +22,7 @@ LayerStackView layer_stack_of(const ShadeScene* scene, uint material) {
 static DirectionRecord through_weights(LayerStackView stack, Vec3 wi, Vec3 wo, real scale,
                                        __global float* lobe_weights) {
     DirectionRecord d = {wi.x, wi.y, wi.z, scale, 0.0f, scale, 0.0f, 0.0f};
-    if (stack.record.through_lobe != NO_INDEX)
+    if (stack.record.through_ratio != NO_INDEX)
         d.top = scale * layer_stack_through_lobe(stack, wi, wo);
 #if FEATURE_DEEPER_LOBES
     for (uint l = 0u; l < stack.record.lobe_count; ++l)

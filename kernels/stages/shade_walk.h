@@ -21,7 +21,13 @@ Walk walk_of(const ShadeScene* scene, MaterialRecord material, const ShadeStep* 
     walk.stack.tables = scene->tables;
     walk.stack.count = material.layer_count;
     walk.stack.sigma = material.sigma;
+#if FEATURE_SHEETS
+    walk.stack.is_sheet = material.other_side != NO_INDEX;
+#else
+    walk.stack.is_sheet = 0;
+#endif
     walk.light_pdf = walk.light_cosine = 0.0f;
+    walk.is_light_far = 0;
     walk.writer = walk_writer(scene->walk_chunks, scene->walk_chunks_used, scene->walk_room);
     walk.random =
         walk_random(step->state.pixel, step->state.sample,
@@ -44,7 +50,8 @@ static void shade_walk(const ShadeScene* scene, SurfacePoint point, MaterialReco
         if (sample.weight > 0.0f) {
             const real selection = scene->lights[step->vertex.light].selection;
             walk.light_pdf = selection * sample.pdf;
-            walk.light_cosine = wi.z;
+            walk.light_cosine = fabs(wi.z);
+            walk.is_light_far = wi.z < 0.0f;
             walk_light(walk.stack, wi, sample.weight / selection, &walk.random, arrivals);
         }
     }
@@ -54,7 +61,7 @@ static void shade_walk(const ShadeScene* scene, SurfacePoint point, MaterialReco
     step->state.throughput *= end.expected;
     const real survival =
         path_survival(step->state.throughput, step->depth, scene->render.min_depth);
-    if (end.weight > 0.0f && u < survival && vec3_dot(point.geometric, direction) > 0.0f) {
+    if (end.weight > 0.0f && u < survival && surface_is_left(point, end.direction, direction)) {
         step->vertex.has_next = 1u;
         step->state.throughput /= survival;
         step->state.bsdf_pdf = end.pdf;

@@ -23,7 +23,8 @@
 /// Connects an interface that the walk stands at to light on this side or beyond.
 void walk_connect_at_facets(Walk* walk, WalkSurface surface, const WalkArrival* light, int beyond,
                             float density) {
-    const uint medium = walk->at.medium + (beyond ? 1u : 0u); // beyond is below
+    const uint next = walk->at.down ? walk->at.medium + 1u : walk->at.medium - 1u;
+    const uint medium = beyond ? next : walk->at.medium;
     // only the walk between Smith's facets has another density than that of its first facet
     const int is_smith = surface.multiple && surface.distribution != MICROFACET_BLINN;
     const float chance =
@@ -39,26 +40,34 @@ int walk_meets_interface(Walk* walk) {
     const WalkArrival* above = walk->arrivals + WALK_AT_INTERFACE(k, 1);
     const WalkArrival* below = walk->arrivals + WALK_AT_INTERFACE(k, 0);
     const WalkArrival* same = down ? above : below;
+    const WalkArrival* beyond = down ? below : above;
     WalkTargets targets = walk_no_targets();
     const int is_rough = walk_is_rough(surface);
     if (is_rough) {
         targets.has_same = same->fluence > 0.0f;
-        targets.has_beyond = down && below->fluence > 0.0f; // up: the light comes down by itself
+        // on the way up light from above comes down by itself
+        targets.has_beyond = (down || walk->is_light_far) && beyond->fluence > 0.0f;
         targets.same = same->v;
-        targets.beyond = below->v;
+        targets.beyond = beyond->v;
     }
     const Vec3 v = walk->at.v;
     const WalkDeparture departure = walk_interface(surface, v, targets, &walk->random);
     if (targets.has_same)
         walk_connect_at_facets(walk, surface, same, 0, departure.same_density);
     if (targets.has_beyond)
-        walk_connect_at_facets(walk, surface, below, 1, departure.beyond_density);
+        walk_connect_at_facets(walk, surface, beyond, 1, departure.beyond_density);
     walk->weight *= departure.weight;
     walk_go_on(&walk->at, departure);
     if (!(walk->weight > 0.0f && walk->at.v.z > 0.0f))
         return 0;
-    if (is_rough && (down || !departure.passed))
-        walk_leaves(walk, walk_chance_at_facets(surface, v, departure.direction, departure.passed));
+    if (is_rough) {
+        const float chance =
+            walk_chance_at_facets(surface, v, departure.direction, departure.passed);
+        if (down || !departure.passed)
+            walk_leaves(walk, chance);
+        else
+            walk_leaves_upwards(walk, chance);
+    }
     return 1;
 }
 
@@ -107,7 +116,7 @@ int walk_cross_slab(Walk* walk) {
 /// Takes the walk on to the next interface or the substrate, through the medium's slab and the
 /// flakes at its lower end; returns 0 where it ends on the way.
 int walk_cross(Walk* walk) {
-    if (walk->at.medium == 0u)
+    if (walk_is_outside(walk->stack, walk->at.medium))
         return 1;
 #if FEATURE_TABULATED_REFLECTANCE
     if (!walk->at.down && walk_finds_flake(walk))
@@ -141,6 +150,9 @@ WalkEnd walk_stack(Walk* walk, Vec3 wo) {
     walk->weight = walk->expected = 1.0f;
     walk->is_delta = 1;
     walk->chance = 0.0f;
+#if FEATURE_SHEETS
+    walk->far_chance = 0.0f;
+#endif
     walk->reference = 0u;
     walk->by_flight = 0;
 #if FEATURE_WALKED_DYES
@@ -149,7 +161,7 @@ WalkEnd walk_stack(Walk* walk, Vec3 wo) {
 #endif
     walk_take_reference(walk);
     WalkEnd end = {vec3(0.0f, 0.0f, 1.0f), 0.0f, 0.0f, 0.0f};
-    for (walk->steps = 0u; walk->at.down || walk->at.medium > 0u; ++walk->steps) {
+    for (walk->steps = 0u; walk_has_surface_ahead(walk->stack, walk->at); ++walk->steps) {
         const int goes_on = walk->at.down && walk->at.medium == walk->stack.count
                                 ? walk_meets_substrate(walk)
                                 : walk_meets_interface(walk);
@@ -159,7 +171,15 @@ WalkEnd walk_stack(Walk* walk, Vec3 wo) {
     end.direction = vec3(-walk->at.v.x, -walk->at.v.y, walk->at.v.z);
     end.weight = walk->weight * walk_balance(walk);
     end.expected = walk->expected;
-    end.pdf = walk->is_delta ? -1.0f : walk->chance * end.direction.z;
+    end.pdf = walk->chance * walk->at.v.z;
+#if FEATURE_SHEETS
+    if (walk->at.down) {
+        end.direction.z = -walk->at.v.z;
+        end.pdf = walk->far_chance * walk->at.v.z;
+    }
+#endif
+    if (walk->is_delta)
+        end.pdf = -1.0f;
     return end;
 }
 

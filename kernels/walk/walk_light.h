@@ -12,6 +12,9 @@
 // rough interface must go up through it again). The camera's own direction finds paths of both
 // kinds: those without a connection count in full there, the others share their light with the
 // connections (walk_chance.h), which would be few and large where a rough surface is almost smooth.
+//
+// Light from the far side of a sheet need not turn round. There the light's half takes smooth
+// surfaces alone, and the connection is its first event at anything else.
 #ifndef RERADIANT_WALK_LIGHT_H
 #define RERADIANT_WALK_LIGHT_H
 
@@ -25,7 +28,8 @@ typedef struct {
     __global const WalkPartRecord* parts;
     __global const float* tables;
     uint count;
-    float sigma; ///< of an Oren-Nayar substrate
+    float sigma;  ///< of an Oren-Nayar substrate
+    int is_sheet; ///< without a substrate: beneath the last interface is air
 } WalkStack;
 
 /// Light at one place of the stack.
@@ -102,6 +106,16 @@ float walk_ior(WalkStack stack, uint medium) {
     return medium == 0u ? 1.0f : stack.parts[medium - 1u].ior;
 }
 
+/// True in the air, above the stack or beneath a sheet.
+int walk_is_outside(WalkStack stack, uint medium) {
+    return medium == 0u || (stack.is_sheet && medium == stack.count);
+}
+
+/// True while something lies ahead.
+int walk_has_surface_ahead(WalkStack stack, WalkPosition at) {
+    return at.down ? !(stack.is_sheet && at.medium == stack.count) : at.medium > 0u;
+}
+
 void walk_clear_arrivals(WalkArrival* arrivals) {
     for (uint i = 0u; i < WALK_PLACES; ++i)
         arrivals[i].fluence = 0.0f;
@@ -137,11 +151,12 @@ WalkDeparture walk_light_through(WalkSurface surface, Vec3 v, WalkRandom* random
     return departure;
 }
 
-/// The light's way at a smooth interface. At the top it takes the way into the stack: out is lost
+/// The light's way at a smooth interface. From the air it takes the way into the stack: out is lost
 /// to it.
-WalkDeparture walk_light_smooth(WalkSurface surface, WalkPosition at, WalkRandom* random) {
+WalkDeparture walk_light_smooth(WalkStack stack, WalkSurface surface, WalkPosition at,
+                                WalkRandom* random) {
     WalkDeparture departure = walk_departure();
-    if (walk_interface_ahead(at) > 0u || !at.down)
+    if (!walk_is_outside(stack, at.medium))
         return walk_smooth(surface, at.v, random);
     departure.passed = 1;
     departure.weight = 1.0f - walk_reflectance(surface, at.v.z);
@@ -165,7 +180,7 @@ void walk_light_pass_flakes(WalkStack stack, WalkPosition at, WalkArrival* light
 /// Takes the light through the slab of the medium, unscattered.
 void walk_light_cross(WalkStack stack, WalkPosition at, WalkArrival* light, WalkRandom* random,
                       WalkArrival* arrivals) {
-    if (at.medium == 0u)
+    if (walk_is_outside(stack, at.medium))
         return;
     light->v = at.v;
     if (!at.down)
@@ -180,19 +195,19 @@ void walk_light_cross(WalkStack stack, WalkPosition at, WalkArrival* light, Walk
 }
 
 /// Takes the light through or off an interface, and records its arrival where that is rough.
-/// Returns 0 where the light's half ends.
-int walk_light_meets(WalkStack stack, WalkPosition* at, WalkArrival* light, WalkRandom* random,
-                     WalkArrival* arrivals) {
+/// is_far: it comes from beneath a sheet. Returns 0 where the light's half ends.
+int walk_light_meets(WalkStack stack, WalkPosition* at, int is_far, WalkArrival* light,
+                     WalkRandom* random, WalkArrival* arrivals) {
     const uint k = walk_interface_ahead(*at);
     const WalkSurface surface = walk_surface(stack, k, !at->down);
     const int is_rough = walk_is_rough(surface);
     if (is_rough) {
         walk_arrive(arrivals + WALK_AT_INTERFACE(k, at->down), *light, random);
-        if (!at->down)
+        if (!at->down || is_far)
             return 0;
     }
     const WalkDeparture departure = is_rough ? walk_light_through(surface, at->v, random)
-                                             : walk_light_smooth(surface, *at, random);
+                                             : walk_light_smooth(stack, surface, *at, random);
     if (is_rough && !departure.passed)
         return 0;
     const float flux =
@@ -202,19 +217,25 @@ int walk_light_meets(WalkStack stack, WalkPosition* at, WalkArrival* light, Walk
     return light->fluence > 0.0f && at->v.z > 0.0f;
 }
 
-/// Follows light from direction wi (in air, above the surface), `fluence` what it brings on a plane
-/// that faces it, to all places of arrival.
+/// Follows light from direction wi (in air, above the surface or beneath a sheet), `fluence` what
+/// it brings on a plane that faces it, to all places of arrival.
 void walk_light(WalkStack stack, Vec3 wi, float fluence, WalkRandom* random,
                 WalkArrival* arrivals) {
     WalkPosition at = {wi, 0u, 1};
     WalkArrival light;
-    light.v = wi;
+    const int is_far = wi.z < 0.0f;
+    if (is_far) {
+        at.v = walk_mirrored(wi);
+        at.medium = stack.count;
+        at.down = 0;
+    }
+    light.v = at.v;
     light.fluence = fluence;
     light.mirrors = 0u;
     light.mirror_cosine = 0.0f;
     for (uint k = 0u; k < WALK_LAYERS; ++k)
         light.lengths[k] = 0.0f;
-    while (at.down || at.medium > 0u) {
+    while (walk_has_surface_ahead(stack, at)) {
         if (at.down && at.medium == stack.count) {
             const WalkPartRecord substrate = stack.parts[stack.count];
             if (substrate.reflectance == NO_INDEX || substrate.alpha > 0.0f) {
@@ -224,7 +245,7 @@ void walk_light(WalkStack stack, Vec3 wi, float fluence, WalkRandom* random,
             ++light.mirrors;
             light.mirror_cosine = at.v.z;
             at.down = 0; // mirrored twice, into the frame of the surface above: v stays
-        } else if (!walk_light_meets(stack, &at, &light, random, arrivals)) {
+        } else if (!walk_light_meets(stack, &at, is_far, &light, random, arrivals)) {
             return;
         }
         walk_light_cross(stack, at, &light, random, arrivals);

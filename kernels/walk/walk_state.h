@@ -26,12 +26,16 @@ typedef struct {
     const WalkArrival* arrivals; ///< of the light (WALK_PLACES)
     float light_pdf;             ///< of the light's direction; 0: chance cannot meet the light
     float light_cosine;          ///< of the light's direction in air
+    int is_light_far;            ///< it comes from beneath a sheet
     WalkWriter writer;
     WalkRandom random;
     real weight;
     float expected; ///< weight times what events leave of the lane that keeps most
     int is_delta;   ///< smooth surfaces alone so far
     float chance;   ///< of the event that a light met by chance is shared at (walk_chance.h)
+#if FEATURE_SHEETS
+    float far_chance; ///< likewise, of light beneath the sheet
+#endif
     uint steps;
     uint reference; ///< which extinction distances to events in slabs are sampled with
     float log_densities[WALK_REFERENCES]; ///< of all distances so far, under each
@@ -93,10 +97,19 @@ void walk_end_flight(Walk* walk, float redrawn) {
 }
 #endif
 
-/// The walk has left a rough surface, the substrate or a scattering event with a density, and is in
-/// the medium that it left to.
+/// The walk has left upwards through a rough surface with a density, and is in the medium that it
+/// left to. Light from above would have come down that way by itself.
+void walk_leaves_upwards(Walk* walk, float density) {
+#if FEATURE_LIGHTS_MET && FEATURE_SHEETS
+    walk->far_chance =
+        walk_chance_below(density, walk_ior(walk->stack, walk->at.medium), walk->at.v.z);
+#endif
+}
+
+/// The walk has left a rough surface in any other way, the substrate or a scattering event.
 void walk_leaves(Walk* walk, float density) {
     walk->is_delta = 0;
+    walk_leaves_upwards(walk, density);
 #if FEATURE_LIGHTS_MET
     walk->chance = walk_chance_below(density, walk_ior(walk->stack, walk->at.medium), walk->at.v.z);
 #endif

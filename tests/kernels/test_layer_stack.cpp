@@ -67,7 +67,8 @@ kernels::LayerStackView view(const std::vector<LobeRecord>& lobes) {
 
 TEST(KernelLayerStack, SamplesFollowTheirPdf) {
     // Chi-square of directions in 8 x 16 cells of (z, phi) against the integrated pdf.
-    const std::vector<LobeRecord> lobes(LOBES, {0.4f, MICROFACET_BECKMANN, 1u, NO_INDEX, NO_INDEX});
+    const std::vector<LobeRecord> lobes(
+        LOBES, {0.4f, MICROFACET_BECKMANN, 1u, NO_INDEX, NO_INDEX, NO_INDEX});
     const kernels::LayerStackView stack = view(lobes);
     kernels::LayerChoice choice{};
     for (int i = 0; i < CHOICES; ++i)

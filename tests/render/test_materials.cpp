@@ -247,8 +247,10 @@ Material sheet(std::vector<Layer> layers, double alpha_below) {
 
 TEST(Materials, SheetsAreAsMeasuredOnBothSides) {
     const double channels = 2e-3;
+    // kernels read amplitudes linearly, and those of tabulated lobes are less smooth
+    const double ratios = 6e-4;
     expect_as_measured("scattering", sheet({scattering(1.5, 0.0, 0.4)}, 0.0), Model::Adding);
-    expect_as_measured("rough", sheet({layer(1.5, 0.25)}, 0.2), Model::Adding);
+    expect_as_measured("rough", sheet({layer(1.5, 0.25)}, 0.2), Model::Adding, bands, ratios);
     expect_as_measured("rough below", sheet({lacquer(0.0)}, 0.25), Model::Adding);
     expect_as_measured("dyed", sheet({dyed(lacquer(0.0))}, 0.0), Model::Adding, bands, channels);
     expect_as_measured("dyed, scattering", sheet({dyed(scattering(1.4, 0.0, 0.6))}, 0.0),

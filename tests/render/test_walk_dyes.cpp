@@ -1,8 +1,4 @@
-#include "host/layers/stack/slab_emission.h"
-#include "host/layers/walk/walk_estimate.h"
-#include "host/measure/measure_substrate.h"
-#include "tests/render/walk_strips.h"
-#include "tests/support/directions.h"
+#include "tests/render/walk_truth.h"
 
 #include <gtest/gtest.h>
 
@@ -47,27 +43,12 @@ std::vector<Material> dyed_materials() {
             plaster_under({dyed(layer(1.3), 1.0)})};
 }
 
-/// Radiance of each band towards the view, under light of one unit per nm from wi.
-struct Truth {
-    Eigen::VectorXd value, variance;
-};
-Truth truth_of(const Material& material, const kernels::Vec3& wi) {
-    const kernels::Vec3 wo = direction_deg(view_deg, 0.0);
-    const LayerWalk walk(material.stack, measured_substrate(material.substrate, bands),
-                         bands.centres_nm(), slab_emissions(material.stack, bands));
-    const WalkEstimate found =
-        estimate_walk(walk, wi, {&wo, 1}, is_full_run() ? 1u << 19 : 1u << 13, 3);
-    WalkTally::Parts errors = found.standard_error.directional[0];
-    for_parts(errors, [](auto& part) { part = part.cwiseAbs2().eval(); });
-    return {wi.z * all_light(found.mean.directional[0]).rowwise().sum(),
-            wi.z * wi.z * all_light(errors).rowwise().sum()};
-}
-
 TEST(WalkDyes, MatchTheDoublePrecisionWalk) {
     const std::vector<Material> materials = dyed_materials();
     const RenderResult result = render_strips(materials, sun, Model::Walk, 64);
     for (std::size_t m = 0; m < materials.size(); ++m) {
-        const Truth truth = truth_of(materials[m], direction_deg(35.0, 60.0));
+        const WalkedTruth truth =
+            walked_truth(materials[m], direction_deg(35.0, 60.0), direction_deg(view_deg));
         for (int band = 0; band < bands.count; ++band) {
             const BandStatistics found = strip_statistics(result.image, static_cast<int>(m), band);
             const double expected = truth.value(band);

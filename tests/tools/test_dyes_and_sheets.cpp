@@ -122,8 +122,6 @@ TEST_F(DyesAndSheets, CommandsRefuseModelsAndGeometriesThatCannotDoThem) {
 
 TEST_F(DyesAndSheets, PicturesOfWhatTheRendererDoesNotKnowAreRefusedAtTheMaterial) {
     put("sheet.toml", scene_with(sheet));
-    expect_failure(2, "render sheet.toml -o out.exr --png out.png --json out.json --model walk",
-                   "sheet.toml:15:1: the renderer's walk does not know sheets yet");
     for (const std::string name : {"sheet", "dyed"}) {
         put("dyed.toml", scene_with(dyed));
         expect_failure(2, "render " + name + ".toml -o out.exr --wavelengths hero",

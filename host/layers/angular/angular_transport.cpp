@@ -2,6 +2,7 @@
 
 #include "host/layers/angular/angular_system.h"
 #include "host/layers/models/adding.h"
+#include "host/layers/models/returned_lobe.h"
 #include "host/layers/rough/facet_shape.h"
 #include "host/layers/rough/interface_walk.h"
 #include "host/layers/rough/lost_flux.h"
@@ -110,8 +111,8 @@ public:
         std::vector<double> shares{top_lobe_albedo(c)};
         for (std::size_t l = 0; l < lobes_.size(); ++l) {
             const double share = tables_[l].albedo(c);
-            shares.push_back(lobes_[l].table ? 0.0 : share);
-            shares.front() += lobes_[l].table ? share : 0.0;
+            shares.push_back(lobes_[l].is_between_facets() ? 0.0 : share);
+            shares.front() += lobes_[l].is_between_facets() ? share : 0.0;
         }
         return shares;
     }
@@ -223,7 +224,7 @@ private:
                 while (k < count && !is_rough(interfaces[k]))
                     ++k;
             const Eigen::VectorXd cut = cut_albedo(k);
-            add_lobe(first, cut - above);
+            add_lobe(first, interfaces[k - 1], cut - above);
             above = cut;
         }
     }
@@ -292,18 +293,9 @@ private:
         return surface && surface->scatters();
     }
 
-    /// A smooth interface takes the shape of the rough one above it.
-    Distribution distribution_at(std::size_t interface) const {
-        for (std::size_t e = interface; e > 0; --e)
-            if (const auto* surface = std::get_if<SurfaceValues>(&stack_[e]);
-                surface && surface->alpha != 0.0)
-                return surface->distribution;
-        return std::get<SurfaceValues>(stack_.front()).distribution;
-    }
-
-    void add_lobe(std::size_t interface, const Eigen::VectorXd& coefficients) {
-        LobeShape lobe = deeper_lobe(stack_, interface);
-        lobe.distribution = distribution_at(interface);
+    /// The lobe of light whose deepest interface is one from `first` to `last`.
+    void add_lobe(std::size_t first, std::size_t last, const Eigen::VectorXd& coefficients) {
+        const LobeShape lobe = returned_lobe(unscattered_, first, last);
         lobes_.push_back(lobe);
         tables_.push_back(fit_lobe(lobe, [&](double c) {
             const double in = smooth_response(lobe_top_, 1.0, c).transmission;

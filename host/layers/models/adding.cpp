@@ -178,7 +178,7 @@ std::optional<OrenNayarWeights> AddingModel::whole_way_out(double sigma, double 
 std::vector<LobeShape> AddingModel::lobes() const {
     std::vector<LobeShape> all;
     for (const LobeShape& lobe : deeper_lobes())
-        if (!lobe.table) // the top lobe covers it
+        if (!lobe.is_between_facets()) // the top lobe covers it
             all.push_back(lobe);
     if (has_top_lobe())
         all.push_back({top_.distribution, top_.alpha});

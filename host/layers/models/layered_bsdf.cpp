@@ -86,12 +86,16 @@ void LayeredBsdf::make_models(ClosedModel model) {
     const bool scattering = std::any_of(stacks_.begin(), stacks_.end(), [](const auto& elements) {
         return without_scattered(elements) != elements;
     });
+    const StackElements& middle = stacks_[static_cast<std::size_t>(bands() / 2)];
+    const bool is_sheet =
+        std::holds_alternative<SurfaceValues>(middle.back()) && !conductor_of(middle);
+    const auto lobe = is_sheet ? through_lobe(stacks_) : nullptr;
     for (int band = 0; band < bands(); ++band) {
         const StackElements& elements = stacks_[static_cast<std::size_t>(band)];
         const bool same = like_the_last(band);
-        if (std::holds_alternative<SurfaceValues>(elements.back()) && !conductor_of(elements)) {
+        if (is_sheet) {
             sheets_.push_back(same ? sheets_.back()
-                                   : std::make_shared<SheetTransmission>(elements));
+                                   : std::make_shared<SheetTransmission>(elements, lobe));
             continue;
         }
         models_.push_back(same ? models_.back() : model(elements));

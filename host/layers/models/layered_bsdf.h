@@ -108,7 +108,7 @@ private:
     Choice choice(const AirDirection& from) const;
     Sample sample_far(const kernels::Vec3& w, const Choice& chosen, double beyond,
                       const std::array<double, 3>& random) const;
-    const LobeShape* far_lobe() const;
+    const LobeShape* far_lobe(Side from) const;
 
     std::vector<StackElements> stacks_;                                  ///< by band
     std::vector<std::shared_ptr<const StackBsdf>> models_, unscattered_; ///< empty for a sheet

@@ -30,10 +30,10 @@ std::shared_ptr<LayeredBsdf::Choices> LayeredBsdf::new_choices() {
     return std::make_shared<Choices>();
 }
 
-const LobeShape* LayeredBsdf::far_lobe() const {
+const LobeShape* LayeredBsdf::far_lobe(Side from) const {
     const SheetTransmission* sheet =
         is_sheet() ? sheets_[static_cast<std::size_t>(bands() / 2)].get() : nullptr;
-    return sheet && sheet->has_lobe() ? &sheet->lobe() : nullptr;
+    return sheet && sheet->has_lobe() ? &sheet->lobe(from) : nullptr;
 }
 
 /// Shares of the light, means over the bands of what each emits under white light.
@@ -138,7 +138,7 @@ LayeredBsdf::Sample LayeredBsdf::sample_far(const Vec3& w, const Choice& chosen,
     if (beyond < chosen.straight)
         return {kernels::vec3(-w.x, -w.y, -w.z), chosen.straight, true};
     Vec3 found = kernels::sampling_cosine(random[1], random[2]);
-    const LobeShape* lobe = far_lobe();
+    const LobeShape* lobe = far_lobe(side_of(w));
     if (lobe && beyond < chosen.straight + chosen.far_lobe) {
         const Vec3 own = mirrored_above(w);
         found = kernels::layer_stack_sample_lobe(kernel_distribution(lobe->distribution),
@@ -160,7 +160,7 @@ double LayeredBsdf::pdf(const Vec3& w, const Vec3& other) const {
                                              sampling_width(lobe, own.z), own, found);
     };
     if (!same) {
-        const LobeShape* lobe = far_lobe();
+        const LobeShape* lobe = far_lobe(side_of(w));
         return chosen.far_cosine * found.z * std::numbers::inv_pi +
                (lobe ? chosen.far_lobe * lobe_pdf(*lobe) : 0.0);
     }

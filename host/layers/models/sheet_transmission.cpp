@@ -17,23 +17,6 @@ bool slab_scatters(const StackElement& element) {
     return std::holds_alternative<SlabValues>(element) && scatters(element);
 }
 
-/// The lobe of light that goes through all rough interfaces once. A lobe's passages are made on the
-/// way in and on the way out: half of each, by the terms that add up.
-LobeShape lobe_through(std::span<const StackElement> sheet) {
-    LobeShape lobe;
-    for (const StackElement& element : sheet) {
-        const auto* surface = std::get_if<SurfaceValues>(&element);
-        if (!surface || !surface->scatters())
-            continue;
-        lobe.distribution = surface->distribution;
-        const double power = surface->distribution == Distribution::Ggx ? 1.5 : 2.0;
-        lobe.passages.push_back(
-            {surface->alpha * std::pow(0.5, 1.0 / power), surface->ior_above, surface->ior_below});
-    }
-    lobe.ior = 1.0; // no facet of its own: alpha is 0
-    return lobe;
-}
-
 /// Mean of a share over diffuse light.
 template <typename Share>
 double average(const Share& share) {
@@ -47,19 +30,18 @@ SheetTransmission::Sides SheetTransmission::sides_of(const StackElements& sheet)
     return {adding_bsdf(sheet), adding_bsdf(upside_down(sheet))};
 }
 
-SheetTransmission::SheetTransmission(const StackElements& sheet)
-    : whole_(sides_of(sheet)), scatters_(std::any_of(sheet.begin(), sheet.end(), slab_scatters)) {
+SheetTransmission::SheetTransmission(const StackElements& sheet,
+                                     std::shared_ptr<const ThroughLobe> lobe)
+    : lobe_(std::move(lobe)), whole_(sides_of(sheet)),
+      scatters_(std::any_of(sheet.begin(), sheet.end(), slab_scatters)) {
     const StackElements unscattered = without_scattered(sheet);
     unscattered_ = scatters_ ? sides_of(unscattered) : whole_;
-    if (std::none_of(sheet.begin(), sheet.end(), is_rough_interface)) {
+    if (!lobe_) {
         smooth_ = unscattered;
     } else {
-        lobe_ = lobe_through(sheet);
-        // no more than goes through from either side, whose averages are equal: what is left of
-        // both has the product form
-        tables_ = fit_lobe(lobe_, [&](double c) {
-            return std::min(specular_albedo(c, Side::Above), specular_albedo(c, Side::Below));
-        });
+        tables_ = fit_lobes({lobe_->above, lobe_->below},
+                            {[&](double c) { return specular_albedo(c, Side::Above); },
+                             [&](double c) { return specular_albedo(c, Side::Below); }});
         average_beside_ = average([&](double c) { return beside_lobe(c, Side::Above); });
     }
     if (scatters_)
@@ -67,14 +49,14 @@ SheetTransmission::SheetTransmission(const StackElements& sheet)
 }
 
 double SheetTransmission::delta(double cos_theta) const {
-    if (smooth_.empty())
+    if (has_lobe())
         return 0.0;
     return smooth_response(smooth_pile(1.0, smooth_), 1.0, std::clamp(cos_theta, 0.0, 1.0))
         .transmission;
 }
 
 double SheetTransmission::specular_albedo(double cos_theta, Side from) const {
-    return smooth_.empty() ? unscattered(from).transmission(cos_theta) : delta(cos_theta);
+    return has_lobe() ? unscattered(from).transmission(cos_theta) : delta(cos_theta);
 }
 
 double SheetTransmission::scattered_albedo(double cos_theta, Side from) const {
@@ -86,7 +68,7 @@ double SheetTransmission::scattered_albedo(double cos_theta, Side from) const {
 double SheetTransmission::beside_lobe(double cos_theta, Side from) const {
     if (!has_lobe())
         return 0.0;
-    return std::max(specular_albedo(cos_theta, from) - tables_.albedo(cos_theta), 0.0);
+    return std::max(specular_albedo(cos_theta, from) - lobe_albedo(cos_theta, from), 0.0);
 }
 
 double SheetTransmission::product_amplitude(double cos_theta, Side side) const {
@@ -105,8 +87,9 @@ double SheetTransmission::specular(const kernels::Vec3& above,
                                    const kernels::Vec3& below_mirrored) const {
     if (!has_lobe())
         return 0.0;
-    const double lobe = lobe_amplitude(above.z) * lobe_amplitude(below_mirrored.z) *
-                        lobe_value(lobe_, above, below_mirrored);
+    const double lobe = lobe_amplitude(above.z, Side::Above) *
+                        lobe_amplitude(below_mirrored.z, Side::Below) *
+                        lobe_value(lobe_->above, above, below_mirrored);
     const double beside = average_beside_ > 0.0
                               ? average_beside_ / (average_beside_ + average_scattered_) *
                                     product(above.z, below_mirrored.z)

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/layers/models/stack_bsdf.h"
-#include "host/layers/rough/specular_lobes.h"
+#include "host/layers/models/through_lobe.h"
 #include "host/layers/stack/side.h"
 
 #include <array>
@@ -12,14 +12,14 @@ namespace reradiant {
 /// Light that goes through a sheet in air at one wavelength without being absorbed (model adding):
 /// the delta of smooth faces, a lobe of rough ones, and what slabs scatter.
 ///
-/// The lobe is that of facets over the half vector of one direction and the mirror image of the
-/// other, as wide as both faces spread light (kernels/scatter/lobe_width.h). What slabs scatter,
-/// and what is left of the lobe's flux, has a product form, t(above) t(below) / (pi average), as
-/// the residual of the light that comes back has (reradiant/stack_model.h). Both are reciprocal
-/// between the sides and carry the flux that adding gives them.
+/// The lobe has the shape of ThroughLobe. What slabs scatter, and what is left of the lobe's flux,
+/// has a product form, t(above) t(below) / (pi average), as the residual of the light that comes
+/// back has (reradiant/stack_model.h). Both are reciprocal between the sides and carry the flux
+/// that adding gives them.
 class SheetTransmission {
 public:
-    explicit SheetTransmission(const StackElements& sheet);
+    /// `lobe`: that of the sheet (through_lobe) at a wavelength that stands for all.
+    SheetTransmission(const StackElements& sheet, std::shared_ptr<const ThroughLobe> lobe);
 
     /// The sheet as seen from a side, and without what its slabs scatter.
     const StackBsdf& whole(Side side) const { return *whole_[index(side)]; }
@@ -37,12 +37,19 @@ public:
     double scattered(double cos_above, double cos_below) const;
 
     /// True where a face is rough: there is a lobe and no delta.
-    bool has_lobe() const { return smooth_.empty(); }
-    const LobeShape& lobe() const { return lobe_; }
-    /// Amplitude of the lobe, the same from both sides.
-    double lobe_amplitude(double cos_theta) const { return tables_.amplitude(cos_theta); }
-    /// Approximate share of the flux that the lobe holds.
-    double lobe_albedo(double cos_theta) const { return tables_.albedo(cos_theta); }
+    bool has_lobe() const { return lobe_ != nullptr; }
+    /// The lobe as seen from a side.
+    const LobeShape& lobe(Side from) const {
+        return from == Side::Above ? lobe_->above : lobe_->below;
+    }
+    /// Amplitude of the lobe: those of both sides multiply it.
+    double lobe_amplitude(double cos_theta, Side side) const {
+        return tables_[index(side)].amplitude(cos_theta);
+    }
+    /// Approximate share of the flux from a side that the lobe holds.
+    double lobe_albedo(double cos_theta, Side from) const {
+        return tables_[index(from)].albedo(cos_theta);
+    }
     /// t of a side over sqrt(pi average): the product of both sides' is the product form's value.
     double product_amplitude(double cos_theta, Side side) const;
 
@@ -55,11 +62,11 @@ private:
     double beside_lobe(double cos_theta, Side from) const;
     double product(double cos_above, double cos_below) const;
 
+    std::shared_ptr<const ThroughLobe> lobe_;
     StackElements smooth_; ///< without scattering; empty where a face is rough
     Sides whole_, unscattered_;
     bool scatters_ = false;
-    LobeShape lobe_;
-    LobeTables tables_; ///< of the lobe
+    std::array<LobeTables, 2> tables_; ///< of the lobe, by side
     double average_beside_ = 0.0, average_scattered_ = 0.0;
 };
 

@@ -16,7 +16,7 @@ namespace reradiant {
 namespace {
 
 /// This version must be raised when the numbers or the layout of a stored file change.
-constexpr std::uint32_t format_version = 6;
+constexpr std::uint32_t format_version = 7;
 
 std::uint64_t bits_of(double value) {
     std::uint64_t bits = 0;
@@ -33,23 +33,40 @@ std::uint64_t checksum_of(const std::vector<double>& numbers) {
     return hash;
 }
 
+/// The kinds by their magic words and by the beginnings of their files' names.
+struct Kind {
+    const char *magic, *name;
+};
+Kind kind_of(const InterfaceKey& key) {
+    switch (key.kind) {
+    case InterfaceNumbers::Operator:
+        return {"RRIFACE", ""};
+    case InterfaceNumbers::FacetShape:
+        return {"RRSHAPE", "shape-"};
+    case InterfaceNumbers::LobeRatio:
+        break;
+    }
+    return {"RRRATIO", "ratio-"};
+}
+
 struct Header {
     char magic[8];
     std::uint32_t version, count;
     std::int64_t eta_1e4;
     std::int32_t distribution, scattering;
-    std::uint64_t alpha_bits, checksum;
+    std::uint64_t alpha_bits, key_checksum, checksum;
 };
 
 Header header_of(const InterfaceKey& key, const std::vector<double>& numbers) {
     Header header{};
-    std::memcpy(header.magic, key.kind == InterfaceNumbers::Operator ? "RRIFACE" : "RRSHAPE", 8);
+    std::memcpy(header.magic, kind_of(key).magic, 8);
     header.version = format_version;
     header.count = static_cast<std::uint32_t>(numbers.size());
     header.eta_1e4 = key.eta_1e4;
     header.distribution = static_cast<std::int32_t>(key.interface.distribution);
     header.scattering = static_cast<std::int32_t>(key.interface.scattering);
     header.alpha_bits = bits_of(key.interface.alpha);
+    header.key_checksum = checksum_of(key.numbers);
     header.checksum = checksum_of(numbers);
     return header;
 }
@@ -57,9 +74,12 @@ Header header_of(const InterfaceKey& key, const std::vector<double>& numbers) {
 } // namespace
 
 std::filesystem::path InterfaceKey::file() const {
+    if (!numbers.empty())
+        return cache_directory() / "interfaces" /
+               fmt::format("v{}-{}{:016x}.bin", format_version, kind_of(*this).name,
+                           checksum_of(numbers));
     return cache_directory() / "interfaces" /
-           fmt::format("v{}-{}{}-{}-{}-{:016x}.bin", format_version,
-                       kind == InterfaceNumbers::Operator ? "" : "shape-", eta_1e4,
+           fmt::format("v{}-{}{}-{}-{}-{:016x}.bin", format_version, kind_of(*this).name, eta_1e4,
                        static_cast<int>(interface.distribution),
                        static_cast<int>(interface.scattering), bits_of(interface.alpha));
 }

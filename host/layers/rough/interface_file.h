@@ -9,14 +9,16 @@
 namespace reradiant {
 
 /// What the disk cache keeps of rough interfaces.
-enum class InterfaceNumbers { Operator, FacetShape };
+enum class InterfaceNumbers { Operator, FacetShape, LobeRatio };
 
 /// An `InterfaceKey` says which interface a file belongs to, whose IOR ratio is eta_1e4 / 10000
-/// whatever `interface` says, and what of it the file holds.
+/// whatever `interface` says, and what of it the file holds. What depends on several interfaces has
+/// all that it depends on in `numbers` instead.
 struct InterfaceKey {
     InterfaceNumbers kind;
     RoughInterface interface;
     long eta_1e4;
+    std::vector<double> numbers = {};
 
     /// The file's path within cache_directory().
     std::filesystem::path file() const;

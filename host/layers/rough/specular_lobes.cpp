@@ -2,12 +2,14 @@
 
 #include "host/layers/rough/interface_walk.h"
 #include "kernels/scatter/facet_shape.h"
+#include "kernels/scatter/lobe_ratio.h"
 #include "kernels/scatter/lobe_width.h"
 #include "kernels/scatter/microfacet.h"
 
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -42,7 +44,23 @@ namespace {
 constexpr LatticeRule lobe_rule{1021, 76}, deeper_rule{4093, 1516};
 
 double table_ratio(const LobeShape& lobe, const Vec3& wi, const Vec3& wo) {
-    return lobe.table ? kernels::facet_shape_value(lobe.table->data(), lobe.alpha, wi, wo) : 1.0;
+    if (!lobe.table)
+        return 1.0;
+    const auto ratio = [&](const Vec3& first, const Vec3& second) {
+        return kernels::lobe_ratio_value(lobe.table->data(), sampling_width(lobe, first.z), first,
+                                         second);
+    };
+    switch (lobe.table_kind) {
+    case LobeShape::Table::OwnFirst:
+        return ratio(wi, wo);
+    case LobeShape::Table::OwnSecond:
+        return ratio(wo, wi);
+    case LobeShape::Table::Sum:
+        return ratio(wi, wo) + ratio(wo, wi);
+    case LobeShape::Table::Facets:
+        break;
+    }
+    return kernels::facet_shape_value(lobe.table->data(), lobe.alpha, wi, wo);
 }
 
 /// Share of a unit lobe's flux without Fresnel, one sample of the visible facets of a width: G2 /
@@ -97,7 +115,7 @@ auto key_of(const LobeShape& lobe) {
     std::vector<double> numbers{lobe.alpha, lobe.ior};
     for (const LobePassage& p : lobe.passages)
         numbers.insert(numbers.end(), {p.alpha, p.ior_above, p.ior_below});
-    return std::tuple{lobe.distribution, std::move(numbers), lobe.table};
+    return std::tuple{lobe.distribution, std::move(numbers), lobe.table, lobe.table_kind};
 }
 
 std::shared_ptr<const Eigen::MatrixXd> spread_of(const LobeShape& lobe) {
@@ -112,6 +130,25 @@ std::shared_ptr<const Eigen::MatrixXd> spread_of(const LobeShape& lobe) {
 
 std::vector<double> as_vector(const Eigen::VectorXd& v) {
     return {v.data(), v.data() + v.size()};
+}
+
+Eigen::VectorXd at_nodes(const std::function<double(double cosine)>& wanted) {
+    Eigen::VectorXd values(CosineTable::nodes);
+    for (int node = 0; node < CosineTable::nodes; ++node)
+        values(node) = std::max(wanted(CosineTable::node_cosine(node)), 0.0);
+    return values;
+}
+
+/// Lowers amplitudes where the lobe would hold more than `target`; `unscaled` is its albedo without
+/// them.
+void lower_to(const Eigen::VectorXd& target, const Eigen::VectorXd& unscaled, Eigen::VectorXd& a) {
+    const Eigen::VectorXd reached = a.cwiseProduct(unscaled);
+    for (Eigen::Index i = 0; i < a.size(); ++i)
+        a(i) *= reached(i) > target(i) ? target(i) / reached(i) : 1.0;
+}
+
+LobeTables tables_of(const Eigen::VectorXd& amplitude, const Eigen::VectorXd& albedo) {
+    return {CosineTable(as_vector(amplitude)), CosineTable(as_vector(albedo))};
 }
 
 } // namespace
@@ -143,13 +180,9 @@ CosineTable lobe_albedo(const LobeShape& lobe) {
 
 LobeTables fit_lobe(const LobeShape& lobe, const std::function<double(double cosine)>& wanted) {
     const std::shared_ptr<const Eigen::MatrixXd> spread = spread_of(lobe);
-    Eigen::VectorXd target(CosineTable::nodes);
-    for (int node = 0; node < CosineTable::nodes; ++node) {
-        // a little below what is there, so that interpolation does not overshoot it and the
-        // residual takes the rest; a lobe with a table stands for all
-        target(node) =
-            (lobe.table ? 1.0 : 0.998) * std::max(wanted(CosineTable::node_cosine(node)), 0.0);
-    }
+    // a little below what is there, so that interpolation does not overshoot it and the residual
+    // takes the rest; a lobe with a table stands for all
+    const Eigen::VectorXd target = (lobe.table ? 1.0 : 0.998) * at_nodes(wanted);
     Eigen::VectorXd a = target.cwiseSqrt();
     for (int step = 0; step < 12; ++step) {
         const Eigen::VectorXd albedo = a.cwiseProduct(*spread * a);
@@ -159,11 +192,28 @@ LobeTables fit_lobe(const LobeShape& lobe, const std::function<double(double cos
             a(i) = std::min(a(i), lobe.table ? 2.0 : 1.0);
         }
     }
-    const Eigen::VectorXd reached = a.cwiseProduct(*spread * a);
-    for (Eigen::Index i = 0; i < a.size(); ++i)
-        a(i) *= reached(i) > target(i) ? target(i) / reached(i) : 1.0;
-    const Eigen::VectorXd albedo = a.cwiseProduct(*spread * a);
-    return {CosineTable(as_vector(a)), CosineTable(as_vector(albedo))};
+    lower_to(target, *spread * a, a);
+    return tables_of(a, a.cwiseProduct(*spread * a));
+}
+
+std::array<LobeTables, 2> fit_lobes(const std::array<LobeShape, 2>& lobes,
+                                    const std::array<std::function<double(double)>, 2>& wanted) {
+    constexpr double largest = 2.0;
+    const std::shared_ptr<const Eigen::MatrixXd> spreads[2] = {spread_of(lobes[0]),
+                                                               spread_of(lobes[1])};
+    const Eigen::VectorXd targets[2] = {at_nodes(wanted[0]), at_nodes(wanted[1])};
+    Eigen::VectorXd a[2] = {targets[0].cwiseSqrt(), targets[1].cwiseSqrt()};
+    for (int step = 0; step < 24; ++step)
+        for (const std::size_t own : {0U, 1U}) {
+            const Eigen::VectorXd unscaled = *spreads[own] * a[1 - own];
+            for (Eigen::Index i = 0; i < unscaled.size(); ++i)
+                a[own](i) =
+                    unscaled(i) > 0.0 ? std::min(targets[own](i) / unscaled(i), largest) : 0.0;
+        }
+    for (const std::size_t own : {0U, 1U})
+        lower_to(targets[own], *spreads[own] * a[1 - own], a[own]);
+    return {tables_of(a[0], a[0].cwiseProduct(*spreads[0] * a[1])),
+            tables_of(a[1], a[1].cwiseProduct(*spreads[1] * a[0]))};
 }
 
 LobeShape deeper_lobe(std::span<const StackElement> stack, std::size_t element) {

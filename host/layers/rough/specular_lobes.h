@@ -4,6 +4,7 @@
 #include "reradiant/stack_elements.h"
 #include "reradiant/stack_model.h"
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -49,6 +50,14 @@ CosineTable lobe_albedo(const LobeShape& lobe);
 /// any node: fixed-point steps on a K a = wanted, K the lobe's own spread (without Fresnel). It is
 /// 1 at most, 2 for a shape with a table.
 LobeTables fit_lobe(const LobeShape& lobe, const std::function<double(double cosine)>& wanted);
+
+/// Returns the amplitudes of a lobe that goes from one side to another, whose albedos from both
+/// sides come near `wanted` likewise: between directions of cosines c and d on the two sides it is
+/// a(c) b(d) times its shape, by steps of Sinkhorn and Knopp 1967. `lobes`: its shape as seen from
+/// either side.
+std::array<LobeTables, 2>
+fit_lobes(const std::array<LobeShape, 2>& lobes,
+          const std::array<std::function<double(double cosine)>, 2>& wanted);
 
 /// Returns the lobe, without its distribution, of what an interface of a stack reflects through the
 /// rough interfaces above it.

@@ -8,6 +8,7 @@
 #include "host/render/tables/substrate_operator.h"
 #include "host/scene/model/closed_model.h"
 #include "kernels/core/shared.h"
+#include "kernels/scatter/lobe_ratio.h"
 #include "kernels/scatter/shape_table.h"
 #include "reradiant/error.h"
 
@@ -52,7 +53,8 @@ public:
             plan_walk();
         else
             plan_closed_model();
-        plan_substrate();
+        if (plan_.choice.model != Model::Walk || !material_.stack.is_sheet())
+            plan_substrate();
         if (material_.stack.is_dyed() && plan_.choice.model != Model::Walk)
             plan_dyes();
         return std::move(plan_);
@@ -94,8 +96,9 @@ private:
         plan_.counts.floats *= 2;
         const bool is_rough = !material_.stack.is_smooth();
         plan_.is_straight = !is_rough;
-        plan_.counts.floats += row_;  // a substrate that sends nothing back, for the other side
-        plan_.counts.floats += nodes; // straight on, or the amplitude of a lobe
+        plan_.counts.floats += row_; // a substrate that sends nothing back, for the other side
+        // straight on, or the amplitudes of a lobe and its shape
+        plan_.counts.floats += is_rough ? 2 * nodes + LOBE_RATIO_SIZE : nodes;
         if (is_rough || material_.stack.scatters())
             plan_.counts.floats += 2 * nodes;
         if (wavelengths_.hero > 0)
@@ -202,8 +205,11 @@ private:
     void plan_lobes() {
         plan_.counts.lobes = static_cast<std::uint64_t>(plan_.features.lobes);
         plan_.features.deeper_lobes = plan_.counts.lobes > 0;
-        if (plan_.choice.model == Model::Adding && has_facet_lobe_on_a_side())
-            plan_.counts.floats += SHAPE_TABLE_SIZE;
+        if (plan_.choice.model == Model::Adding) {
+            const std::uint64_t facets = has_facet_lobe_on_a_side() ? 1 : 0;
+            plan_.counts.floats +=
+                facets * SHAPE_TABLE_SIZE + (plan_.counts.lobes - facets) * LOBE_RATIO_SIZE;
+        }
         if (plan_.choice.model == Model::WeidlichWilkie)
             for (const DeeperLobe& lobe : weidlich_wilkie_lobes(stack_))
                 if (std::holds_alternative<SlabValues>(stack_[lobe.element]))
@@ -221,6 +227,12 @@ private:
             const SurfaceValues& surface = *surface_of(stack_[e]);
             plan_.counts.walk_parts += std::holds_alternative<FlakesValues>(stack_[e]) ? 1 : 0;
             plan_walked_surface(surface);
+        }
+        if (material_.stack.is_sheet()) {
+            plan_.features.sheets = true;
+            plan_.counts.materials = 2;
+            plan_.counts.walk_parts *= 2;
+            plan_.counts.floats *= 2;
         }
     }
 
@@ -348,7 +360,8 @@ RenderFeatures features_of_model(const Material& material, Model model) {
     RenderFeatures features;
     features.walk = model == Model::Walk;
     if (features.walk)
-        features.walk_layers = static_cast<int>(material.stack.layers.size());
+        features.walk_layers =
+            static_cast<int>(material.stack.layers.size()) + (material.stack.is_sheet() ? 1 : 0);
     else
         features.lobes = deeper_lobe_count(material, model);
     features.reflectance_image = material.substrate.type != SubstrateType::Conductor &&

@@ -96,7 +96,7 @@ private:
         const double cosine = node_cosine(node);
         const auto straight = 3 + static_cast<std::size_t>(lobes_);
         here[straight] = sheet.delta(cosine);
-        here[straight + 1] = sheet.has_lobe() ? sheet.lobe_albedo(cosine) : 0.0;
+        here[straight + 1] = sheet.has_lobe() ? sheet.lobe_albedo(cosine, optics_.side()) : 0.0;
         here[straight + 2] = sheet.product_amplitude(cosine, optics_.side()) * beside_(lane) +
                              (through_ ? through_(lane, node) : 0.0);
     }

@@ -42,7 +42,9 @@ public:
         const LaneOperator substrate = append_substrate(material_, plan_.choice.model, optics_,
                                                         *plan_.on_cells, lanes_, record_, out_);
         record_.dyes = record_.dyes_far = record_.dye_coupling = NO_INDEX;
-        record_.through_delta = record_.through_lobe = NO_INDEX;
+        record_.through_delta = record_.through_ratio = NO_INDEX;
+        record_.through_first = 0u;
+        record_.through_lobe_own = record_.through_lobe_far = NO_INDEX;
         record_.through_own = record_.through_far = NO_INDEX;
         if (above)
             take_from_other_side(*above);
@@ -143,9 +145,12 @@ private:
                             static_cast<std::uint32_t>(kernel_distribution(shapes[l].distribution)),
                             static_cast<std::uint32_t>(
                                 is_model_a() ? lobes[l].part : parts_above(shapes[l].element)),
-                            NO_INDEX, NO_INDEX};
+                            NO_INDEX,
+                            NO_INDEX,
+                            NO_INDEX};
             if (shapes[l].table)
-                lobe.shape = lanes_.append_numbers(*shapes[l].table);
+                (shapes[l].is_between_facets() ? lobe.shape : lobe.ratio) =
+                    lanes_.append_numbers(*shapes[l].table);
             const auto* slab = std::get_if<SlabValues>(&stack_[lobes[l].element]);
             if (is_model_a() && slab) {
                 lobe.alpha = static_cast<float>(slab->anisotropy);
@@ -225,9 +230,18 @@ private:
         record_.dyes_shift_up = above.dyes_shift_up;
         record_.dye_terms = above.dye_terms;
         record_.through_delta = above.through_delta;
-        record_.through_lobe = above.through_lobe;
+        record_.through_lobe_own = above.through_lobe_far;
+        record_.through_lobe_far = above.through_lobe_own;
+        record_.through_ratio = above.through_ratio;
+        record_.through_first = 1u - above.through_first;
         record_.through_own = above.through_far;
         record_.through_far = above.through_own;
+    }
+
+    void append_through_ratio() {
+        const LobeShape& lobe = optics_.any_sheet().lobe(Side::Above);
+        record_.through_first = lobe.table_kind == LobeShape::Table::OwnFirst ? 1u : 0u;
+        record_.through_ratio = lanes_.append_numbers(*lobe.table);
     }
 
     void append_through() {
@@ -236,15 +250,22 @@ private:
                 [&] { return value(optics_.any_sheet()); },
                 [&](int phase, int lane) { return value(optics_.sheet_at(phase, lane)); });
         };
-        const bool has_lobe = optics_.any_sheet().has_lobe();
-        const auto straight_or_lobe = nodes([has_lobe](const SheetTransmission& sheet) {
-            return [&sheet, has_lobe](double c) {
-                return has_lobe ? sheet.lobe_amplitude(c) : sheet.delta(c);
-            };
-        });
-        (has_lobe ? record_.through_lobe : record_.through_delta) = straight_or_lobe;
-        if (!has_lobe && !material_.stack.scatters())
-            return;
+        const auto lobe = [&](Side side) {
+            return nodes([side](const SheetTransmission& sheet) {
+                return [&sheet, side](double c) { return sheet.lobe_amplitude(c, side); };
+            });
+        };
+        if (optics_.any_sheet().has_lobe()) {
+            record_.through_lobe_own = lobe(Side::Above);
+            record_.through_lobe_far = lobe(Side::Below);
+            append_through_ratio();
+        } else {
+            record_.through_delta = nodes([](const SheetTransmission& sheet) {
+                return [&sheet](double c) { return sheet.delta(c); };
+            });
+            if (!material_.stack.scatters())
+                return;
+        }
         const auto product = [&](Side side) {
             return nodes([side](const SheetTransmission& sheet) {
                 return [&sheet, side](double c) { return sheet.product_amplitude(c, side); };

@@ -22,11 +22,14 @@ void drop_repeats(std::vector<std::string>& notes) {
 /// Appends all materials in their order; the other sides of sheets follow after them.
 void append_materials(const Scene& scene, const RenderPlan& plan, SceneTables& tables) {
     std::map<std::size_t, MaterialOptics> sheets;
+    std::vector<std::size_t> walked_sheets;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         const MaterialPlan& planned = plan.materials[i];
         if (planned.choice.model == Model::Walk) {
             append_walk_material(material, planned, plan.wavelengths, tables);
+            if (material.stack.is_sheet())
+                walked_sheets.push_back(i);
             continue;
         }
         MaterialOptics optics(material, planned.choice.model, plan.wavelengths);
@@ -37,6 +40,9 @@ void append_materials(const Scene& scene, const RenderPlan& plan, SceneTables& t
     for (const auto& [index, optics] : sheets)
         append_other_side(scene.materials[index], plan.materials[index], plan.wavelengths,
                           plan.features, optics, index, tables);
+    for (const std::size_t index : walked_sheets)
+        append_walked_other_side(scene.materials[index], plan.materials[index], plan.wavelengths,
+                                 index, tables);
     for (const std::uint32_t material : plan.passed_sheets)
         if (material != NO_INDEX) {
             MaterialRecord& above = tables.materials[material];

@@ -61,13 +61,16 @@ MaterialOptics::MaterialOptics(const Material& material, Model model, const Wave
     const int count = spectral_ ? plan.phases * lanes_ : 1;
     (material.stack.is_sheet() ? sheets_.resize(static_cast<std::size_t>(count))
                                : optics_.resize(static_cast<std::size_t>(count)));
+    std::vector<StackElements> stacks;
+    for (int i = 0; i < count; ++i)
+        stacks.push_back(material_at(
+            material, spectral_ ? plan.wavelength_nm(i % lanes_, i / lanes_) : reference_nm));
+    const auto lobe = is_sheet() ? through_lobe(stacks) : nullptr;
     tbb::parallel_for(0, count, [&](int i) {
-        const double wavelength =
-            spectral_ ? plan.wavelength_nm(i % lanes_, i / lanes_) : reference_nm;
-        const StackElements stack = material_at(material, wavelength);
+        const StackElements& stack = stacks[static_cast<std::size_t>(i)];
         const auto k = static_cast<std::size_t>(i);
         if (is_sheet())
-            sheets_[k] = std::make_shared<SheetTransmission>(stack);
+            sheets_[k] = std::make_shared<SheetTransmission>(stack, lobe);
         else
             optics_[k] = closed_model(model)(stack);
     });

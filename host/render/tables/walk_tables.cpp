@@ -59,14 +59,16 @@ void set_references(const SlabDepths& depths, const std::vector<double>& emitted
 
 class WalkTables {
 public:
+    /// `from`: the side of a sheet that the camera sees.
     WalkTables(const Material& material, const MaterialPlan& plan,
-               const WavelengthPlan& wavelengths, SceneTables& out)
-        : material_(material), plan_(plan), stack_(material_at(material, reference_nm)), out_(out),
+               const WavelengthPlan& wavelengths, Side from, SceneTables& out)
+        : material_(material), plan_(plan), from_(from),
+          stack_(material_at(material, reference_nm, from)), out_(out),
           lanes_(wavelengths, out.tables) {
         for (int phase = 0; phase < lanes_.phases(); ++phase)
             for (int lane = 0; lane < lanes_.lanes(); ++lane)
                 lane_stacks_.push_back(
-                    material_at(material, wavelengths.wavelength_nm(lane, phase)));
+                    material_at(material, wavelengths.wavelength_nm(lane, phase), from));
     }
 
     void append() {
@@ -77,11 +79,12 @@ public:
             if (const auto* interface = std::get_if<SurfaceValues>(&stack_[e]))
                 append_interface(*interface);
             else if (const auto* slab = std::get_if<SlabValues>(&stack_[e]))
-                append_slab(plan_.slabs[record_.layer_count - 1], slab->anisotropy,
-                            out_.walk_parts.back());
+                append_slab(slab->anisotropy, out_.walk_parts.back());
         }
-        append_substrate_part();
-        append_flakes();
+        if (!material_.stack.is_sheet()) {
+            append_substrate_part();
+            append_flakes();
+        }
         out_.materials.push_back(record_);
     }
 
@@ -108,10 +111,13 @@ private:
     }
 
     /// The slab's, in the part of the interface above it.
-    void append_slab(const SlabDepths& depths, double anisotropy, WalkPartRecord& part) {
+    void append_slab(double anisotropy, WalkPartRecord& part) {
+        const std::size_t own = from_ == Side::Above ? record_.layer_count - 1
+                                                     : plan_.slabs.size() - record_.layer_count;
+        const SlabDepths& depths = plan_.slabs[own];
         if (!depths.absorbs() && !depths.scatters())
             return;
-        const Layer& layer = material_.stack.layers[record_.layer_count - 1];
+        const Layer& layer = material_.stack.layers[own];
         part.least_depth = static_cast<float>(
             *std::min_element(depths.absorption.begin(), depths.absorption.end()));
         part.extinction = lanes_.append_lanes(
@@ -210,6 +216,7 @@ private:
 
     const Material& material_;
     const MaterialPlan& plan_;
+    Side from_;
     StackElements stack_; ///< at the reference wavelength
     SceneTables& out_;
     LaneTables lanes_;
@@ -221,7 +228,16 @@ private:
 
 void append_walk_material(const Material& material, const MaterialPlan& plan,
                           const WavelengthPlan& wavelengths, SceneTables& tables) {
-    WalkTables(material, plan, wavelengths, tables).append();
+    WalkTables(material, plan, wavelengths, Side::Above, tables).append();
+}
+
+void append_walked_other_side(const Material& material, const MaterialPlan& plan,
+                              const WavelengthPlan& wavelengths, std::size_t above,
+                              SceneTables& tables) {
+    const auto below = static_cast<std::uint32_t>(tables.materials.size());
+    WalkTables(material, plan, wavelengths, Side::Below, tables).append();
+    tables.materials[above].other_side = below;
+    tables.materials[below].other_side = static_cast<std::uint32_t>(above);
 }
 
 } // namespace reradiant

@@ -8,4 +8,9 @@ namespace reradiant {
 void append_walk_material(const Material& material, const MaterialPlan& plan,
                           const WavelengthPlan& wavelengths, SceneTables& tables);
 
+/// Appends those of a sheet as it is seen from beneath, whose material is `above`.
+void append_walked_other_side(const Material& material, const MaterialPlan& plan,
+                              const WavelengthPlan& wavelengths, std::size_t above,
+                              SceneTables& tables);
+
 } // namespace reradiant

@@ -40,9 +40,12 @@ std::optional<std::string> device_walk_refusal(const Material& material) {
         return "the renderer's walk needs an IOR that does not depend on wavelength";
     if (material.stack.has_films())
         return "the renderer's walk knows no films between dielectrics";
-    for (const Layer& layer : material.stack.layers)
+    for (const Layer& layer : material.stack.layers) {
+        if (layer.flakes && material.stack.is_sheet())
+            return "the renderer's walk knows no flakes in sheets";
         if (layer.flakes && !(layer.flakes->reflector.alpha > 0.0))
             return "the renderer's walk knows no smooth flakes";
+    }
     return std::nullopt;
 }
 
@@ -79,28 +82,13 @@ ModelChoice choose_by_itself(const Material& material, ModelUse use) {
                                : "auto: adding, every interreflection over the diffuse substrate"};
 }
 
-/// Refuses pictures that the renderer cannot make yet: of sheets by its walk.
-void refuse_pictures(const Material& material, const ModelChoice& choice, ModelUse use) {
-    if (use == ModelUse::Measure)
-        return;
-    const std::string because = choice.reason.empty() ? "" : " (" + choice.reason + ")";
-    if (material.stack.is_sheet() && choice.model == Model::Walk)
-        throw_input_error(material.position,
-                          "the renderer's walk does not know sheets yet" + because,
-                          "the model adding renders them without flakes and films on rough "
-                          "interfaces; `reradiant measure` walks them all");
-}
-
 } // namespace
 
 ModelChoice choose_model(const Material& material, Model requested, ModelUse use) {
     const Model model = requested == Model::Auto ? material.model : requested;
     if (const std::optional<ModelRefusal> refusal = model_refusal(material, model))
         throw_input_error(material.position, refusal->reason, refusal->remedy);
-    ModelChoice choice =
-        model == Model::Auto ? choose_by_itself(material, use) : ModelChoice{model, ""};
-    refuse_pictures(material, choice, use);
-    return choice;
+    return model == Model::Auto ? choose_by_itself(material, use) : ModelChoice{model, ""};
 }
 
 } // namespace reradiant
