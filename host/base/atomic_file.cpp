@@ -1,5 +1,6 @@
 #include "host/base/atomic_file.h"
 
+#include "host/base/logging.h"
 #include "host/base/output_file.h"
 #include "reradiant/error.h"
 #include "reradiant/paths.h"
@@ -71,6 +72,12 @@ int open_stream(const fs::path& stream) {
     const bool is_number = failure == std::errc{} && end == name.data() + name.size();
     if (is_number && fs::equivalent(stream.parent_path(), "/proc/self/fd", ignored))
         return ::dup(number);
+    const int opened = ::open(stream.c_str(), O_WRONLY | O_NONBLOCK);
+    if (opened >= 0)
+        ::fcntl(opened, F_SETFL, O_WRONLY); // what is written waits until it is read
+    if (opened >= 0 || errno != ENXIO)
+        return opened;
+    logging::warn("{}: nobody reads this pipe yet; waiting for a reader", stream.string());
     return ::open(stream.c_str(), O_WRONLY);
 }
 

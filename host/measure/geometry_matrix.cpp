@@ -94,35 +94,34 @@ double into_port(const StackBsdf& band, double theta) {
     return sum * radians(specular_port_deg) / (3.0 * rings) * 2.0 * std::numbers::pi / sectors;
 }
 
-Eigen::MatrixXd by_closed_model(const Material& material, const SubstrateValues& substrate,
+/// All that is reflected of light from one direction, the mirror's reflection with it.
+Eigen::MatrixXd reflected(const LayeredBsdf& surface, const AirDirection& from) {
+    const LayeredBsdf::Parts parts = surface.albedo(from, from.side);
+    return parts.diffuse + parts.slab + Eigen::MatrixXd(parts.specular.asDiagonal());
+}
+
+/// Light that comes from everywhere and is seen in one direction runs backwards, with excitation
+/// and emission of the substrate exchanged, but that of dyes, which is solved for as it comes.
+Eigen::MatrixXd by_closed_model(const Material& material, SubstrateValues substrate,
                                 const WavelengthGrid& bands, const ViewingGeometry& geometry,
                                 Model model) {
+    const bool is_diffusely_lit = geometry.kind == Kind::HemisphericalDirectional;
+    const bool runs_backwards = is_diffusely_lit && !material.stack.is_dyed();
+    if (runs_backwards)
+        substrate.matrix.transposeInPlace();
     const LayeredBsdf surface(material.stack, substrate, bands, closed_model(model));
     const double theta = radians(geometry.theta_i_deg);
     if (geometry.kind == Kind::Directional)
         return std::numbers::pi * surface.eval(direction_at(std::cos(theta), 0.0),
                                                direction_at(std::cos(radians(geometry.theta_o_deg)),
                                                             radians(geometry.phi_deg)));
-    Eigen::MatrixXd values = surface.diffuse_albedo(std::cos(theta));
-    for (int band = 0; band < bands.count; ++band) {
-        const StackBsdf& stack = surface.at(band);
-        values(band, band) += stack.specular_albedo(std::cos(theta));
-        if (!geometry.specular_included)
-            values(band, band) -= stack.delta(std::cos(theta)) + into_port(stack, theta);
-    }
-    return values;
-}
-
-/// Refuses what closed models do not compute.
-void refuse_unknown(const Material& material, const ViewingGeometry& geometry, Model model) {
-    if (model != Model::Walk && geometry.kind == Kind::HemisphericalDirectional &&
-        material.stack.is_dyed())
-        throw_input_error(material.position,
-                          fmt::format("the geometry {} is not known for dyes in layers: it is "
-                                      "computed as 8/d with excitation and emission exchanged, "
-                                      "and only those of substrates are",
-                                      geometry.name),
-                          "ask for --geometry 8/d or 45/0, or for the model walk");
+    const AirDirection at{std::cos(theta), Side::Above};
+    Eigen::MatrixXd values =
+        is_diffusely_lit && !runs_backwards ? surface.diffusely_lit(at) : reflected(surface, at);
+    for (int band = 0; band < bands.count && !geometry.specular_included; ++band)
+        values(band, band) -=
+            surface.at(band).delta(at.cosine) + into_port(surface.unscattered_at(band), theta);
+    return runs_backwards ? Eigen::MatrixXd(values.transpose()) : values;
 }
 
 /// By reciprocity, light that comes from everywhere and is seen at 8 degrees is light that comes at
@@ -178,24 +177,14 @@ ViewingGeometry viewing_geometry(const std::string& text) {
 
 ReradiationMatrix geometry_matrix(const Material& material, const ViewingGeometry& geometry) {
     const ModelChoice choice = choose_model(material, Model::Auto, ModelUse::Measure);
-    refuse_unknown(material, geometry, choice.model);
     const WavelengthGrid bands = measured_bands(material, {});
     check_measure_memory(material, bands, {});
-    SubstrateValues substrate = measured_substrate(material.substrate, bands);
-    Eigen::MatrixXd values;
-    if (choice.model == Model::Walk) {
-        values = by_walk(material, substrate, bands, geometry);
-    } else {
-        const bool is_backwards = geometry.kind == Kind::HemisphericalDirectional;
-        if (is_backwards)
-            substrate.matrix.transposeInPlace();
-        values = by_closed_model(material, substrate, bands, geometry, choice.model);
-        if (is_backwards)
-            values.transposeInPlace();
-    }
+    const SubstrateValues substrate = measured_substrate(material.substrate, bands);
     ReradiationMatrix matrix;
     matrix.emission = matrix.excitation = bands;
-    matrix.values = std::move(values);
+    matrix.values = choice.model == Model::Walk
+                        ? by_walk(material, substrate, bands, geometry)
+                        : by_closed_model(material, substrate, bands, geometry, choice.model);
     matrix.geometry = geometry.name;
     return matrix;
 }

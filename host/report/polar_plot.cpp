@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -37,23 +38,38 @@ int rim_exponent(const std::vector<PolarSeries>& series) {
     return largest > 0.0 ? static_cast<int>(std::ceil(std::log10(largest) - 1e-9)) : 0;
 }
 
-std::string draw_grid(int rim) {
+/// True when some curve has a side beneath the surface.
+bool has_far_side(const std::vector<PolarSeries>& series) {
+    return std::any_of(series.begin(), series.end(), [](const PolarSeries& one) {
+        return std::any_of(one.angle_deg.begin(), one.angle_deg.end(),
+                           [](double angle) { return std::abs(angle) > 90.0; });
+    });
+}
+
+/// Half a circle from one end of the surface to the other.
+std::string draw_arc(double from_deg, double share) {
+    const Point from = at(from_deg, share), to = at(-from_deg, share);
+    return fmt::format("<path d=\"M{:.1f} {:.1f}A{:.1f} {:.1f} 0 0 1 {:.1f} {:.1f}\" "
+                       "fill=\"none\" stroke=\"{}\"/>\n",
+                       from.x, from.y, radius * share, radius * share, to.x, to.y,
+                       share == 1.0 ? "#444" : "#ddd");
+}
+
+std::string draw_grid(int rim, bool whole_circle) {
     std::string grid;
     for (int decade = 1; decade <= decades; ++decade) {
         const double share = static_cast<double>(decade) / decades;
-        const Point left = at(-90, share), right = at(90, share);
-        grid += fmt::format("<path d=\"M{:.1f} {:.1f}A{:.1f} {:.1f} 0 0 1 {:.1f} {:.1f}\" "
-                            "fill=\"none\" stroke=\"{}\"/>\n",
-                            left.x, left.y, radius * share, radius * share, right.x, right.y,
-                            decade == decades ? "#444" : "#ddd");
+        const Point right = at(90, share);
+        grid += draw_arc(-90, share) + (whole_circle ? draw_arc(90, share) : "");
         grid += text_at(right.x, right.y + 16, "middle",
                         number_label(std::pow(10.0, rim - decades + decade)), 11);
     }
-    for (int angle = -90; angle <= 90; angle += 30) {
+    const int last = whole_circle ? 180 : 90;
+    for (int angle = whole_circle ? -150 : -90; angle <= last; angle += 30) {
         const Point end = at(angle, 1.0), label = at(angle, 1.08);
         grid += fmt::format("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"#ddd\"/>\n",
                             centre_x, centre_y, end.x, end.y);
-        if (std::abs(angle) < 90)
+        if (std::abs(angle) != 90)
             grid += text_at(label.x, label.y + 4, "middle", fmt::format("{}\u00b0", angle), 11);
     }
     return grid;
@@ -89,20 +105,22 @@ std::string draw_arrow(double angle_deg) {
 std::string polar_plot(const std::string& title, const std::vector<PolarSeries>& series,
                        double marked_deg) {
     const int rim = rim_exponent(series);
-    std::string content = text_at(centre_x, 20, "middle", title, 14) + draw_grid(rim);
+    const bool whole_circle = has_far_side(series);
+    const double below = centre_y + (whole_circle ? radius + 24 : 0);
+    std::string content = text_at(centre_x, 20, "middle", title, 14) + draw_grid(rim, whole_circle);
     for (std::size_t k = 0; k < series.size(); ++k) {
         if (series[k].angle_deg.size() != series[k].value.size())
             throw std::invalid_argument(fmt::format("polar series '{}' has {} angles and {} values",
                                                     series[k].label, series[k].angle_deg.size(),
                                                     series[k].value.size()));
         content += draw_curve(series[k], rim, k);
-        const double y = centre_y + 38 + 18 * static_cast<double>(k);
+        const double y = below + 38 + 18 * static_cast<double>(k);
         content += fmt::format("<path d=\"M60 {:.1f}h24\" stroke=\"{}\" stroke-width=\"1.8\"/>\n",
                                y, colours[k % colours.size()]);
         content += text_at(92, y + 4, "start", series[k].label);
     }
     content += draw_arrow(marked_deg);
-    return document(2 * centre_x, centre_y + 46 + 18 * static_cast<double>(series.size()), content);
+    return document(2 * centre_x, below + 46 + 18 * static_cast<double>(series.size()), content);
 }
 
 } // namespace reradiant::svg

@@ -41,7 +41,7 @@ struct RenderOptions {
     double checkpoint_seconds = 60.0; ///< at most so long between two of them
     bool resume = false;              ///< go on from `checkpoint` where it exists
     bool restart_if_other = false; ///< ... and fits; else warn and begin anew, instead of refusing
-    const RenderHooks* hooks = nullptr; ///< of benchmarks; null: there are none
+    const RenderHooks* hooks = nullptr; ///< called on the way; null: there are none
 };
 
 /// The state of a render after one pass.

@@ -3,6 +3,7 @@
 #include "reradiant/scene.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,11 @@ Scene load_scene(const std::filesystem::path& file);
 std::vector<std::string> preset_names();
 
 /// Reads a MATERIAL.toml with one [material]. One material stands at one point: textures are taken
-/// at t = 1/2 and a mixture is left out, which the log says.
-Material load_material(const std::filesystem::path& file);
+/// at t = 1/2 and a mixture is left out, which the log says. The log warns of spectra that are used
+/// outside their data: on `bands`, without them on the grid of the material's matrices or else over
+/// the default range.
+Material load_material(const std::filesystem::path& file,
+                       const std::optional<WavelengthGrid>& bands = {});
 
 /// The layers of a MATERIAL.toml, whose substrate may be anything or absent: what lay above a
 /// sample that was measured through them. Input Error with the place, also for dyes in the layers

@@ -135,6 +135,38 @@ TEST(DyedStackCases, Case62EmissionWithinTheDyesOwnAbsorption) {
         }
 }
 
+// A dye that sends all light out in the band that it absorbs is a cloud that scatters alike to all
+// sides and absorbs nothing: the two are added up by different means. Of deep ones hardly any light
+// gets through, 1e-3 of it at a depth of 1e3.
+TEST(DyedStackCases, Case62ADyeThatKeepsItsBandIsACloud) {
+    const std::vector<double> within{1, 0, 0, 0, 1, 0, 0, 0, 1};
+    for (const double ior : {1.0, 1.5})
+        for (const double depth : {9.0, 30.0, 1e3}) {
+            const std::vector<double> depths{depth, 2 * depth, 3 * depth};
+            Layer cloud;
+            cloud.ior = Spectrum::constant(ior);
+            cloud.scattering_coefficient = at_three_bands(depths);
+            const LayeredBsdf dyed =
+                adding_of({{photon_keeping(ior, depths, within)}, LowerFace{}});
+            const LayeredBsdf scattering = adding_of({{cloud}, LowerFace{}});
+            EXPECT_LE(dyed.emitting()->error(), EmittingStack::tolerance) << depth;
+            for (const double theta : {0.0, 60.0})
+                for (const Side side : {Side::Above, Side::Below}) {
+                    const Eigen::MatrixXd off = all_light(dyed.albedo(air_deg(theta), side)) -
+                                                all_light(scattering.albedo(air_deg(theta), side));
+                    EXPECT_LT(off.cwiseAbs().maxCoeff(), 2e-4)
+                        << "n " << ior << ", depth " << depth << ", " << theta << " degrees";
+                }
+            // over white, too, all comes back
+            EXPECT_LE(
+                adding_of({{photon_keeping(ior, depths, within)}}, Eigen::MatrixXd::Identity(3, 3))
+                    .emitting()
+                    ->error(),
+                EmittingStack::tolerance)
+                << depth;
+        }
+}
+
 TEST(DyedStackCases, Case62HardlyAbsorbingClouds) {
     for (const double depth : {1.0, 30.0, 1e3}) {
         Layer cloud = photon_keeping(1.5, {1, .3, 0});

@@ -49,7 +49,7 @@ Eigen::MatrixXd by_quadrature(const Material& material) {
     const Measurement measured = measure_material(material, request);
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(measured.bands.count, measured.bands.count);
     for (const MeasureRow& row : measured.rows) {
-        if (row.part != MeasuredPart::Diffuse)
+        if (row.part != MeasuredPart::Diffuse && row.part != MeasuredPart::Slab)
             continue;
         const double cosine = std::cos(row.theta_i_deg * std::numbers::pi / 180.0);
         const double v = std::sqrt(cosine) * pieces;
@@ -78,6 +78,28 @@ Material over_stokes_shift(const LayerStack& stack) {
     matrix.values = values;
     material.substrate.matrix = std::make_shared<const ReradiationMatrix>(std::move(matrix));
     return material;
+}
+
+/// A smooth slab with a dye that sends light on by the Stokes shift, on the same bands.
+LayerStack dyed_slab(double ior) {
+    LayerStack stack = test::stack_of({{1.0, ior}, {0.0, 0.1}});
+    ReradiationMatrix shares;
+    shares.emission = shares.excitation = test::grid;
+    shares.values = test::stokes_matrix();
+    stack.layers[0].dyes = {{Spectrum::table({400.0, 500.0, 600.0}, {2.0, 0.7, 0.2}),
+                             1.0,
+                             {},
+                             1.0,
+                             std::make_shared<const ReradiationMatrix>(std::move(shares))}};
+    return stack;
+}
+
+Material sheet_of(LayerStack stack) {
+    Material sheet;
+    sheet.stack = std::move(stack);
+    sheet.stack.lower_face.emplace();
+    sheet.substrate.type = SubstrateType::None;
+    return sheet;
 }
 
 double largest_error(const Eigen::MatrixXd& seen, const Eigen::MatrixXd& expected) {
@@ -272,16 +294,50 @@ TEST(GeometryMatrix, ASheetReflectsFromBothFaces) {
     EXPECT_LT(largest_error(factors(sheet, "d/8"), at_8_degrees), 1e-12);
 }
 
-TEST(GeometryMatrix, WhatIsNotComputedForDyesAndSheetsIsRefused) {
-    Material dyed;
-    dyed.stack.layers.emplace_back().dyes.push_back(
-        {Spectrum::constant(1.0), 1.0, Spectrum::gaussian(600.0, 20.0, 1.0), 0.9, nullptr});
-    EXPECT_THROW(factors(dyed, "d/8"), Error);
-    EXPECT_THROW(factors(dyed, "de/8"), Error);
-    Material walked;
+// What dyes send out before it reaches the substrate is reflected too. 1e-12: rounding.
+TEST(GeometryMatrix, HemisphericalGeometriesHoldTheLightOfDyes) {
+    for (const Material& material : {over_stokes_shift(dyed_slab(1.5)), sheet_of(dyed_slab(1.5))}) {
+        MeasureRequest request;
+        request.theta_i_deg = {8.0};
+        request.hemispherical = true;
+        const Measurement measured = measure_material(material, request);
+        Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3, 3);
+        for (const MeasureRow& row : measured.rows)
+            if (is_reflected(row.part))
+                expected(measured.bands.band_of(row.lambda_o_nm),
+                         measured.bands.band_of(row.lambda_i_nm)) += row.value;
+        EXPECT_LT(largest_error(factors(material, "8/d"), expected), 1e-12);
+        EXPECT_GT(factors(material, "8/d")(1, 0), 0.01);
+    }
+}
+
+// Light from everywhere upon dyes, against the integral over incident directions, whose error is
+// below 1e-6; the mirror's reflection is that of 8/d.
+TEST(GeometryMatrix, DyesAreLitFromEverywhere) {
+    for (const double ior : {1.0, 1.5})
+        for (const Material& material :
+             {over_stokes_shift(dyed_slab(ior)), sheet_of(dyed_slab(ior))}) {
+            const Eigen::MatrixXd excluded = factors(material, "de/8");
+            EXPECT_LT(largest_error(excluded, by_quadrature(material)), 3e-6) << ior;
+            EXPECT_LT(largest_error(factors(material, "d/8") - excluded,
+                                    factors(material, "8/d") - factors(material, "8/de")),
+                      1e-12)
+                << ior;
+        }
+}
+
+// What slabs scatter is no specular light, so that the port takes none of it away. Clouds are
+// computed on cells of direction: 1e-5.
+TEST(GeometryMatrix, CloudyDyesAreLitFromEverywhere) {
+    LayerStack cloudy = dyed_slab(1.5);
+    cloudy.layers[0].scattering_coefficient = Spectrum::constant(2.0);
+    for (const Material& material : {over_stokes_shift(cloudy), sheet_of(cloudy)})
+        EXPECT_LT(largest_error(factors(material, "de/8"), by_quadrature(material)), 1e-5);
+}
+
+TEST(GeometryMatrix, WalksDoNotExcludeSpecularLight) {
+    Material walked = sheet_of({});
     walked.stack.layers.emplace_back().flakes = Flakes{0.2, {}};
-    walked.stack.lower_face.emplace();
-    walked.substrate.type = SubstrateType::None;
     EXPECT_THROW(factors(walked, "8/de"), Error);
     EXPECT_LT(largest_error(factors(walked, "d/8"), factors(walked, "8/d")), 1e-12);
 }

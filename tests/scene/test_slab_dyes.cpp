@@ -123,6 +123,21 @@ TEST_F(SlabDyes, WithoutConcentrationNothingFluoresces) {
     }
 }
 
+// A material is measured on the bands of its shares, and nothing else of its spectra is used.
+TEST_F(SlabDyes, SpectraAreWarnedAboutOnTheBandsThatAreUsed) {
+    put_shares(GOOD_ROWS);
+    const auto file =
+        write("m.toml", text("absorption = { nm = [400, 600], value = [1, 2] }\nshares = { file = "
+                             "\"p.csv\" }"));
+    EXPECT_TRUE(warnings_of([&] { load_material(file); }).empty());
+    const auto warnings =
+        warnings_of([&] { load_material(file, grid_from_range(400.0, 700.0, 100.0)); });
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("data from 400 to 600 nm but is used from 400 to 700 nm"),
+              std::string::npos)
+        << warnings[0];
+}
+
 TEST_F(SlabDyes, ConcentrationsFollowTextures) {
     const std::string scene =
         replaced(SMALL_SCENE, "reflectance = 0.5",

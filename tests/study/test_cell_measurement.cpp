@@ -77,12 +77,70 @@ TEST(CellMeasurement, PolarCurveHasTheHighlightOnTheMirrorSide) {
     EXPECT_GT(*peak, 10.0 * curve.diffuse[0]);
 }
 
-TEST(CellMeasurement, SheetsAreRefusedForWhatTheyTransmit) {
+Material sheet_of(const Layer& layer) {
     Material sheet;
-    sheet.stack.layers.emplace_back();
+    sheet.stack.layers = {layer};
     sheet.stack.lower_face.emplace();
     sheet.substrate.type = SubstrateType::None;
-    EXPECT_THROW(measure_cell(sheet, {}, {lamp("D65")}), Error);
+    return sheet;
+}
+
+// A smooth lossless sheet of n = 1.5 reflects 1/13 and lets 12/13 through at normal incidence.
+TEST(CellMeasurement, ClearSheetsReflectAndLetThrough) {
+    StudyMeasuring measuring;
+    measuring.theta_i_deg = {0.0};
+    measuring.theta_o_deg = {0.0, 180.0};
+    const CellMeasurement cell = measure_cell(sheet_of({}), measuring, {lamp("D65"), lamp("A")});
+    EXPECT_TRUE(cell.of_sheet());
+    ASSERT_EQ(cell.colours.size(), 4u) << "two directions, two lamps";
+    for (const SeenColour& colour : cell.colours) {
+        EXPECT_NEAR(colour.reflected, 100.0 / 13.0, 1e-9);
+        EXPECT_NEAR(colour.transmitted, 1200.0 / 13.0, 1e-9);
+        EXPECT_EQ(colour.guided, 0.0);
+    }
+    const CellMeasurement opaque = measure_cell(bare(0.5), {}, {lamp("D65")});
+    EXPECT_NEAR(opaque.colours[0].reflected, 50.0, 1e-9);
+    EXPECT_TRUE(std::isnan(opaque.colours[0].transmitted));
+}
+
+// What comes in at 400 nm leaves at 500 on both sides or is guided, sqrt(1 - 1/n^2) of it. The rest
+// is the dye's yield: 1e-4 is what adding promises.
+TEST(CellMeasurement, DyedSheetsSendLightToBothSidesAndGuideIt) {
+    Layer layer;
+    layer.dyes = {{Spectrum::table({399, 400, 401}, {0, 3, 0}), 1.0, Spectrum::line(500, 10, 10.0),
+                   0.5, nullptr}};
+    StudyMeasuring measuring;
+    measuring.theta_i_deg = {0.0};
+    measuring.theta_o_deg = {30.0, 150.0};
+    const CellMeasurement cell =
+        measure_cell(sheet_of(layer), measuring, {{"line", Spectrum::line(400, 10, 10.0)}});
+    const int in = cell.bands.band_of(400), out = cell.bands.band_of(500);
+    const double leaves = cell.matrix(out, in) + cell.transmitted(out, in);
+    EXPECT_NEAR(cell.transmitted(out, in), cell.matrix(out, in), 1e-6)
+        << "what nothing absorbs leaves alike on both sides";
+    EXPECT_GT(cell.transmitted(out, in), 0.01);
+    const double guided = cell.guided(out, in);
+    EXPECT_NEAR(guided / (guided + leaves), std::sqrt(1.0 - 1.0 / 2.25), 1e-4);
+    for (const SeenColour& colour : cell.colours)
+        EXPECT_NEAR(colour.quantum_yield, 0.5 * leaves / (guided + leaves), 1e-4);
+    EXPECT_NEAR(cell.colours[1].xyz[1] / cell.colours[0].xyz[1], 1.0, 1e-4)
+        << "seen from the far side";
+}
+
+TEST(CellMeasurement, PolarCurvesOfSheetsGoRoundBothSides) {
+    Layer layer;
+    layer.alpha = 0.2;
+    Material sheet = sheet_of(layer);
+    const CellMeasurement cell = measure_cell(sheet, {}, {lamp("D65")});
+    const PolarCurve& curve = cell.polar[0];
+    EXPECT_EQ(curve.angle_deg.front(), -180.0);
+    EXPECT_EQ(curve.angle_deg.back(), 180.0);
+    const auto straight =
+        std::max_element(curve.total.begin(), curve.total.end(), [](double a, double b) {
+            return (std::isnan(a) ? 0.0 : a) < (std::isnan(b) ? 0.0 : b);
+        });
+    const auto at = static_cast<std::size_t>(straight - curve.total.begin());
+    EXPECT_NEAR(curve.angle_deg[at], 135.0, 7.5) << "light from 45 degrees goes straight on";
 }
 
 } // namespace

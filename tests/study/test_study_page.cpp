@@ -1,8 +1,8 @@
 #include "host/film/png.h"
 #include "host/report/data_uri.h"
 #include "host/report/polar_plot.h"
-#include "host/study/study/contact_sheet.h"
-#include "host/study/study/study_page.h"
+#include "host/study/page/contact_sheet.h"
+#include "host/study/page/study_page.h"
 #include "host/study/study/study_store.h"
 #include "tests/study/study_fixtures.h"
 
@@ -124,14 +124,37 @@ TEST_F(StudyPage, TableHasARowForTheImageAndForTheColour) {
     std::getline(stream, rendered);
     std::getline(stream, measured);
     EXPECT_EQ(head_line, "cell,thickness,source,illuminant,theta_i_deg,theta_o_deg,phi_deg,X,Y,Z,L,"
-                         "a,b,quantum_yield,beta_T_500nm,beta_T_550nm");
+                         "a,b,quantum_yield,reflected,transmitted,guided,beta_T_500nm,"
+                         "beta_T_550nm");
     EXPECT_TRUE(rendered.starts_with("0,1,rendered,,,,,")) << rendered;
-    EXPECT_EQ(measured, "0,1,measured,D65,45,0,0,1,2,3,4,5,6,0.75,0.5,");
+    EXPECT_EQ(measured, "0,1,measured,D65,45,0,0,1,2,3,4,5,6,0.75,,,,0.5,");
     EXPECT_FALSE(std::getline(stream, more)) << "no row for a cell that failed";
     const auto fields = [](const std::string& line) {
         return std::count(line.begin(), line.end(), ',');
     };
     EXPECT_EQ(fields(rendered), fields(head_line));
+}
+
+TEST_F(StudyPage, WhatSheetsTransmitIsKeptAndShown) {
+    StudyResult both = result();
+    CellMeasurement& measured = *both.cells[0].measurement;
+    measured.transmitted = Eigen::Matrix2d{{0.25, 0.0}, {0.125, 0.5}};
+    measured.guided = Eigen::Matrix2d{{0.0, 0.0}, {0.0625, 0.0}};
+    measured.straight = {0.125, 0.25};
+    measured.colours[0].transmitted = 75.0;
+    keep_cell(both.cells[0], "same");
+    CellResult restored = both.cells[0];
+    restored.measurement.reset();
+    ASSERT_TRUE(restore_cell(restored, "same"));
+    EXPECT_EQ(restored.measurement->transmitted, measured.transmitted);
+    EXPECT_EQ(restored.measurement->guided, measured.guided);
+    EXPECT_EQ(restored.measurement->straight, measured.straight);
+    EXPECT_EQ(restored.measurement->colours[0].transmitted, 75.0);
+    EXPECT_TRUE(std::filesystem::exists(restored.folder / "transmitted.csv"));
+    EXPECT_TRUE(std::filesystem::exists(restored.folder / "transmitted.svg"));
+    const std::vector<float> entries{0.25f, 0.125f, 0.0f, 0.5f};
+    EXPECT_EQ(embedded(study_page(study(), both)).at("cells")[0].at("measured").at("transmitted"),
+              base64({reinterpret_cast<const char*>(entries.data()), 16}));
 }
 
 TEST_F(StudyPage, CellsAreRestoredUnlessTheyAreOfAnotherIdentityOrDamaged) {

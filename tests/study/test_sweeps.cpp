@@ -92,6 +92,8 @@ TEST_F(Sweeps, ConcentrationsAndThicknessOfDyedLayersAreSwept) {
     EXPECT_EQ(layer(second).dyes[0].concentration, 0.5);
     EXPECT_EQ(layer(second).dyes[1].concentration, 3.0);
     EXPECT_EQ(layer(second, 0).dyes[1].concentration, 0.0) << "no dye at all";
+    EXPECT_EQ(layer("parameter = \"concentration\"\nvalues = [1, 4]").dyes[1].concentration, 4.0)
+        << "the only layer with dyes over a substrate without is meant";
     EXPECT_EQ(layer("key = \"material.sample.layer.0.fluorophores.0.concentration\"\n"
                     "values = [1, 4]")
                   .dyes[0]
@@ -99,6 +101,43 @@ TEST_F(Sweeps, ConcentrationsAndThicknessOfDyedLayersAreSwept) {
               4.0)
         << "by its key it is the number itself";
     EXPECT_EQ(layer("parameter = \"thickness\"\nvalues = [1, 3]").thickness, 3.0);
+}
+
+// Spectra are then warned about on these bands alone.
+TEST_F(Sweeps, WhatIsOnlyMeasuredHasTheBandsOfItsMatrices) {
+    put("p.csv", "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
+                 "nm,400,500\n400,0.3,0\n500,0.2,0.5\n");
+    put("shares.toml", "[material]\n[[material.layer]]\nior = 1.5\nfluorophores = [ { absorption = "
+                       "1, shares = { file = \"p.csv\" } } ]\n"
+                       "[material.substrate]\ntype = \"none\"\n");
+    const std::string shares = "[study]\nmaterial = \"shares.toml\"\n";
+    const std::string sweep = "[[sweep]]\nparameter = \"thickness\"\nvalues = [1, 2]\n";
+    const Study measured = load(shares + "[measure]\n" + sweep);
+    const Study rendered = load(shares + "[measure]\n[render]\n" + sweep);
+    EXPECT_EQ(scene_with(measured, {}).film.bands, (WavelengthGrid{400.0, 100.0, 2}));
+    EXPECT_FALSE(scene_with(rendered, {}).film.bands.has_value());
+}
+
+// Two equal coats are computed as one, and each can be swept by itself.
+TEST_F(Sweeps, LayersAreCountedAsTheyAreWritten) {
+    const std::string coat = "[[material.layer]]\nior = 1.5\nfluorophores = [ { absorption = 1, "
+                             "emission = { gaussian_nm = 600, sigma_nm = 20 } } ]\n";
+    put("coats.toml", "[material]\n" + coat + coat + "[material.substrate]\ntype = \"none\"\n");
+    const std::string coats = "[study]\nmaterial = \"coats.toml\"\n[[sweep]]\n";
+    const auto stack = [&](const std::string& sweep) {
+        const Study study = load(coats + sweep);
+        return scene_with(study, {{&study.sweeps[0], &study.sweeps[0].values[1]}})
+            .materials[0]
+            .stack;
+    };
+    const std::string second = "parameter = \"concentration\"\nlayer = 1\nvalues = [1, 3]";
+    ASSERT_EQ(stack(second).layers.size(), 1u);
+    EXPECT_EQ(stack(second).layers[0].thickness, 4.0) << "one unit, and one of three times the dye";
+    EXPECT_EQ(stack("parameter = \"thickness\"\nlayer = 1\nvalues = [1, 2]").layers[0].thickness,
+              3.0);
+    EXPECT_NE(refusal(coats + "parameter = \"concentration\"\nvalues = [1, 3]\n")
+                  .find("study.toml:4:1: layers 0, 1 hold fluorophores"),
+              std::string::npos);
 }
 
 TEST_F(Sweeps, MatrixIsLookedForBesideTheStudyAndReplacesReflectance) {

@@ -115,8 +115,8 @@ TEST_F(DyesAndSheets, CommandsRefuseModelsAndGeometriesThatCannotDoThem) {
     for (const char* file : {"dyed.toml", "sheet.toml"})
         expect_failure(2, "measure " + std::string(file) + " -o m.csv --model weidlich-wilkie",
                        std::string(file) + ":1:1: weidlich-wilkie does not know");
-    expect_failure(2, "colour dyed.toml --geometry d/8 --json c.json",
-                   "dyed.toml:1:1: the geometry d/8 is not known for dyes in layers");
+    for (const char* file : {"dyed.toml", "sheet.toml"})
+        EXPECT_EQ(run("colour " + std::string(file) + " --geometry d/8").exit_code, 0) << file;
     expect_failure(2, "colour sheet.toml --geometry 45:180 --json c.json", "the far side");
 }
 
@@ -151,13 +151,17 @@ TEST_F(DyesAndSheets, SynthMeasuresThroughDyedLayersAndNoSheets) {
     const std::size_t substrate = recipe.find("[material.substrate]");
     put("recipe.toml", recipe.substr(0, substrate));
     EXPECT_EQ(run("validate recipe.toml").exit_code, 0);
+    const ProgramResult made = run("synth recipe.toml -o data.csv --json made.json");
+    EXPECT_EQ(made.exit_code, 0) << made.errors;
+    EXPECT_NE(made.output.find("dyes in 1 of the layers"), std::string::npos) << made.output;
+    EXPECT_EQ(Json::parse(file_bytes(folder / "made.json")).at("dyed_layers"), 1);
     put("sheet.toml", recipe.substr(0, substrate) + "[material.back]\nalpha = 0.1\n");
     expect_failure(2, "synth sheet.toml -o data.csv", "a sheet has none");
     put("bare.toml", recipe);
     expect_failure(2, "synth bare.toml -o data.csv", "are the substrate");
 }
 
-TEST_F(DyesAndSheets, StudiesSweepDyesAndRefuseToMeasureSheets) {
+TEST_F(DyesAndSheets, StudiesSweepDyesAndMeasureSheets) {
     put("dyed.toml", dyed);
     put("sheet.toml", sheet);
     const auto study = [&](const std::string& material, const std::string& target) {
@@ -169,11 +173,43 @@ TEST_F(DyesAndSheets, StudiesSweepDyesAndRefuseToMeasureSheets) {
         study("dyed.toml", "parameter = \"concentration\"\nlayer = 0\nfluorophore = 0");
     EXPECT_EQ(swept.exit_code, 0) << swept.errors;
     EXPECT_NE(file_bytes(folder / "out/table.csv").find("concentration"), std::string::npos);
-    put("study.toml", "[study]\nmaterial = \"sheet.toml\"\n[measure]\n[[sweep]]\n"
-                      "key = \"material.sample.layer.0.fluorophores.0.concentration\"\n"
-                      "values = [0, 1]\n");
+    EXPECT_EQ(study("sheet.toml", "parameter = \"concentration\"").exit_code, 0);
+    const std::string far_side = "[measure]\ntheta_o_deg = [150]\n[[sweep]]\n"
+                                 "parameter = \"thickness\"\nvalues = [1, 2]\n";
+    put("study.toml", "[study]\nmaterial = \"sheet.toml\"\n" + far_side);
+    const ProgramResult measured = run("study study.toml -o far");
+    EXPECT_EQ(measured.exit_code, 0) << measured.errors;
+    EXPECT_NE(file_bytes(folder / "far/table.csv").find("45,150,0"), std::string::npos);
+    put("study.toml", "[study]\nmaterial = \"dyed.toml\"\n" + far_side);
     expect_failure(2, "study study.toml -o other",
-                   "study.toml:3:2: a study measures what is reflected");
+                   "study.toml:4:1: theta_o_deg of 150 degrees lies beneath the material");
+}
+
+// Two coats of one varnish give what one coat as thick as both gives, to the bit.
+TEST_F(DyesAndSheets, Case63TwoCoatsAreOne) {
+    const auto coats = [](const std::string& thicknesses_of_all) {
+        const std::string coat =
+            dyed.substr(dyed.find("[[material.layer]]"),
+                        dyed.find("[material.substrate]") - dyed.find("[[material.layer]]"));
+        return replaced(coat, "ior = 1.5\n", "ior = 1.5\nthickness = " + thicknesses_of_all + "\n");
+    };
+    const std::string substrate = dyed.substr(dyed.find("[material.substrate]"));
+    put("two.toml", "[material]\n" + coats("0.25") + coats("0.5\nalpha = 0.3") + substrate);
+    put("one.toml", "[material]\n" + coats("0.75") + substrate);
+    for (const char* name : {"one", "two"}) {
+        const std::string file = name;
+        put(file + "-scene.toml", scene_with(file_bytes(folder / (file + ".toml"))));
+        for (const std::string model : {"adding", "walk --samples 1000"})
+            EXPECT_EQ(run("measure " + file + ".toml --hemispherical --theta-i 0,45 --model " +
+                          model + " -o " + file + "-" + model.substr(0, 4) + ".csv")
+                          .exit_code,
+                      0);
+        EXPECT_EQ(run("render " + file + "-scene.toml --spp 2 -o " + file + ".exr").exit_code, 0);
+    }
+    for (const std::string model : {"addi", "walk"})
+        EXPECT_EQ(file_bytes(folder / ("one-" + model + ".csv")),
+                  file_bytes(folder / ("two-" + model + ".csv")));
+    EXPECT_EQ(run("compare one.exr two.exr --max-relmse 0").exit_code, 0);
 }
 
 /// The numbers of a stack stand for the files that its dyes name.

@@ -65,6 +65,8 @@ TEST_F(ForeignFiles, ConvertNamesTheFileThatItCannotWriteOrRead) {
 }
 
 TEST_F(ForeignFiles, MetalsAreDescribed) {
+    expect_failure(2, "convert " RERADIANT_SOURCE_DIR "/spectra/metals/aluminium.csv out.csv",
+                   "aluminium.csv: is a complex index of refraction");
     const auto json = json_of("info " RERADIANT_SOURCE_DIR "/spectra/metals/aluminium.csv");
     EXPECT_EQ(json["kind"], "complex index of refraction");
     EXPECT_EQ(json["from_nm"], 247.97);

@@ -48,6 +48,21 @@ TEST_F(KeptWork, WalkThatWasInterruptedEndsAsIfItHadNotBeen) {
     expect_failure(2, work + " --resume", "walk.csv.checkpoint: is no whole checkpoint");
 }
 
+// Kernels that are not in the cache take seconds to build, and nobody can ask them to stop.
+TEST_F(KeptWork, RenderThatIsInterruptedBeforeItsFirstPassEndsAtOnce) {
+    const std::string command =
+        "cd '" + (folder / "").string() +
+        "' && { XDG_CACHE_HOME=\"$PWD/cache\" '" RERADIANT_PROGRAM
+        "' render scene.toml -o out.exr --spp 2 --quiet 2>errors & program=$!; "
+        "until test -d cache/reradiant || ! kill -0 $program; do sleep 0.02; done; "
+        "kill -TERM $program; { sleep 2; kill -KILL $program; } 2>/dev/null & wait $program; }";
+    const int status = std::system(command.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 130) << "137: it had to be killed";
+    EXPECT_NE(file_bytes(folder / "errors").find("interrupted while setting up"),
+              std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.exr"));
+}
+
 TEST_F(KeptWork, FitThatWasInterruptedEndsAsIfItHadNotBeen) {
     put("recipe.toml", file_bytes(RERADIANT_SOURCE_DIR "/tools/examples/synth-orange.toml"));
     ASSERT_EQ(run("synth recipe.toml -o data.csv --seed 1").exit_code, 0);

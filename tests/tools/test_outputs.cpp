@@ -226,6 +226,10 @@ TEST_F(Outputs, StreamsGetTheBytes) {
     run("measure material.toml -o pipe --quiet | cat pipe >got #");
     EXPECT_EQ(file_bytes(folder / "got"), expected);
     EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
+    // Who has no reader yet says so, and goes on with the first.
+    run("measure material.toml -o pipe 2>waits & cd '" + (folder / "").string() +
+        "' && timeout 20 sh -c 'until grep waiting waits; do sleep 0.1; done' && cat pipe >late #");
+    EXPECT_EQ(file_bytes(folder / "late"), expected);
     // Images are written with seeks, which pipes do not take.
     ASSERT_EQ(run("render scene.toml -o image.exr --spp 1 --quiet").exit_code, 0);
     run("render scene.toml -o /dev/stdout --spp 1 --quiet | cat >copy.exr #");

@@ -1,5 +1,6 @@
 #include "host/study/converge/converge.h"
 #include "host/film/display_picture.h"
+#include "host/render/wavefront/render_hooks.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
 #include "host/study/converge/converge_page.h"
@@ -83,9 +84,11 @@ int run_converge(ConvergeCommand command, const CommandContext& context) {
     check_outputs(common, {}, {command.scene, options.reference}, options.folder);
     check_display({});
     const Scene scene = load_scene(command.scene);
+    team ? catch_interrupts() : end_at_interrupts();
     prepare_opencl(common.threads);
     const Device device(common.device);
-    catch_interrupts();
+    const RenderHooks hooks{.on_set_up = catch_interrupts};
+    options.render.hooks = &hooks;
     if (!common.quiet && (!team || team->leads()))
         print_plan(options);
     ConvergeResult result;

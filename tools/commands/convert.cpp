@@ -170,6 +170,10 @@ const char* convert(const ConvertOptions& options) {
         convert_matrix(options);
         return "re-radiation matrix";
     }
+    if (file_kind(options.in) == FileKind::ComplexIndex)
+        throw_input_error({options.in.string()},
+                          "is a complex index of refraction (nm,n,k), which has one form alone",
+                          "materials take it as it is: ior and kappa are its two columns");
     convert_spectrum(options);
     return "spectrum";
 }

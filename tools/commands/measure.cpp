@@ -132,7 +132,7 @@ std::optional<Measurement> measure_file(const MeasureOptions& options,
                                         const MeasureRequest& request,
                                         const CommonOptions& common) {
     const std::filesystem::path file = material_file(options);
-    const Material material = load_material(file);
+    const Material material = load_material(file, request.bands);
     check_outputs(common, {{"-o", options.output, {".csv"}}}, named_files());
     try {
         return measure_and_keep(options, material, request, common.quiet);

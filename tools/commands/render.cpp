@@ -3,6 +3,7 @@
 #include "host/film/display_picture.h"
 #include "host/render/checkpoint/render_identity.h"
 #include "host/render/film/render_statistics.h"
+#include "host/render/wavefront/render_hooks.h"
 #include "host/render/wavefront/team_render.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
@@ -140,7 +141,10 @@ RenderResult render_image(const RenderCommand& command, const CommonOptions& com
             if (preview.is_open())
                 preview.update(image());
         };
-    catch_interrupts(); // the pass ends and a checkpoint is written
+    // from its first pass on a render ends with a pass and a checkpoint
+    const RenderHooks hooks{.on_set_up = catch_interrupts};
+    RenderOptions options = command.render;
+    options.hooks = &hooks;
     ProgressBar bar(common.quiet);
     bar.update("setting up tables and kernels");
     const auto progress = [&](const RenderProgress& state) {
@@ -152,8 +156,8 @@ RenderResult render_image(const RenderCommand& command, const CommonOptions& com
                        : fmt::format("{} spp", state.samples));
         return !interrupt_requested();
     };
-    return team != nullptr ? render_together(scene, device, command.render, *team, progress, show)
-                           : render(scene, device, command.render, progress, show);
+    return team != nullptr ? render_together(scene, device, options, *team, progress, show)
+                           : render(scene, device, options, progress, show);
 }
 
 void write_results(RenderCommand& command, const RenderResult& result) {
@@ -177,6 +181,7 @@ int run_render(RenderCommand command, const CommandContext& context) {
         check_display(command.display);
     const Scene scene = load_scene(command.scene);
     check_outputs(common, outputs, named_files());
+    team ? catch_interrupts() : end_at_interrupts(); // teams end together
     prepare_opencl(common.threads);
     const Device device(common.device);
     command.render.checkpoint = checkpoint_beside(command.output);

@@ -1,11 +1,12 @@
 #include "host/study/study/study.h"
 #include "host/base/atomic_file.h"
 #include "host/film/display_picture.h"
+#include "host/render/wavefront/render_hooks.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"
-#include "host/study/study/contact_sheet.h"
-#include "host/study/study/sheet_exposure.h"
-#include "host/study/study/study_page.h"
+#include "host/study/page/contact_sheet.h"
+#include "host/study/page/sheet_exposure.h"
+#include "host/study/page/study_page.h"
 #include "host/study/study/study_store.h"
 #include "tools/program/command.h"
 #include "tools/program/interrupt.h"
@@ -75,12 +76,14 @@ int run(StudyCommand command, const CommandContext& context) {
     const Study study = load_study(command.study);
     if (study.rendering)
         check_display({});
+    study.rendering && !team ? end_at_interrupts() : catch_interrupts();
     std::optional<Device> device;
     if (study.rendering) {
         prepare_opencl(common.threads);
         device.emplace(common.device);
     }
-    catch_interrupts();
+    const RenderHooks hooks{.on_set_up = catch_interrupts};
+    options.render.hooks = &hooks;
     StudyResult result;
     {
         ProgressBar bar(common.quiet);

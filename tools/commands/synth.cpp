@@ -33,6 +33,10 @@ SynthResult synthesise_file(const SynthRecipe& recipe, const fs::path& file, uns
     }
 }
 
+std::ptrdiff_t dyed_layers(const SynthRecipe& recipe) {
+    return std::ranges::count_if(recipe.stack.layers, &Layer::is_dyed);
+}
+
 Json describe(const SynthOptions& options, const SynthRecipe& recipe, const SynthResult& result,
               const ReradiationMatrix& truth, unsigned seed) {
     const std::vector<double> photons = column_balance(truth).photons;
@@ -45,6 +49,7 @@ Json describe(const SynthOptions& options, const SynthRecipe& recipe, const Synt
                  {"emission_bands", recipe.emission.count},
                  {"excitation_bands", recipe.excitation.count},
                  {"geometries", recipe.geometries.size()},
+                 {"dyed_layers", dyed_layers(recipe)},
                  {"entries", result.data.measured_count()},
                  {"peak", result.peak},
                  {"noise_rms", result.noise_rms},
@@ -52,6 +57,14 @@ Json describe(const SynthOptions& options, const SynthRecipe& recipe, const Synt
                  {"quantum_yield", yields},
                  {"largest_photon_column_sum", *std::max_element(photons.begin(), photons.end())}};
     return json;
+}
+
+/// Fits find the substrate, and know nothing of dyes above it.
+void print_what_truth_leaves_out(const SynthRecipe& recipe) {
+    if (recipe.stack.is_dyed())
+        fmt::print("the data hold the light of dyes in {} of the layers, which the truth, the "
+                   "substrate's matrix, does not\n",
+                   dyed_layers(recipe));
 }
 
 int run_synth(const SynthOptions& options, const CommonOptions& common) {
@@ -81,6 +94,7 @@ int run_synth(const SynthOptions& options, const CommonOptions& common) {
     fmt::print("largest fluorescent entry {:.6g}; noise {:.3g} rms off the diagonal, {:.3g} % of "
                "it\n",
                result.peak, result.noise_rms, 100.0 * result.noise_rms / result.peak);
+    print_what_truth_leaves_out(recipe);
     return 0;
 }
 

@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <csignal>
+#include <tuple>
+#include <unistd.h>
 
 namespace reradiant {
 
@@ -10,12 +12,24 @@ namespace {
 std::atomic<bool> requested = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal's handler sets it");
 
+/// Calls only what a signal's handler may call.
+void end_now(int /*signal*/) {
+    constexpr char text[] = "interrupted while setting up; nothing was written\n";
+    std::ignore = ::write(STDERR_FILENO, text, sizeof(text) - 1);
+    ::_exit(exit_interrupted);
+}
+
 void note_interrupt(int signal) {
     requested = true;
     std::signal(signal, SIG_DFL);
 }
 
 } // namespace
+
+void end_at_interrupts() {
+    std::signal(SIGINT, end_now);
+    std::signal(SIGTERM, end_now);
+}
 
 void catch_interrupts() {
     std::signal(SIGINT, note_interrupt);

@@ -35,8 +35,9 @@ MeasureRequest request_from(const py::dict& given) {
 
 /// Errors of meaning have no place of their own: they are placed at the material.
 Measurement measure_source(const Source& source, const MeasureRequest& request) {
-    const Material material =
-        source.table ? material_from_table(*source.table, source.file) : load_material(source.file);
+    const Material material = source.table
+                                  ? material_from_table(*source.table, source.file, request.bands)
+                                  : load_material(source.file, request.bands);
     try {
         return measure_material(material, request);
     } catch (const Error& error) {

@@ -1,5 +1,6 @@
 #include "reradiant/synth.h"
 
+#include "host/layers/stack/joined_layers.h"
 #include "host/measure/measure_substrate.h"
 #include "reradiant/measure.h"
 #include "reradiant/reradiation.h"
@@ -106,8 +107,9 @@ std::vector<Eigen::MatrixXd> on_common_grid(const SynthRecipe& recipe,
         return {bare};
     std::vector<Eigen::MatrixXd> seen(geometries.size(),
                                       Eigen::MatrixXd::Zero(bands.count, bands.count));
-    const Measurement measurement =
-        measure_stack(recipe.stack, bare, bands, request_for(geometries));
+    LayerStack stack = recipe.stack;
+    join_layers({&stack});
+    const Measurement measurement = measure_stack(stack, bare, bands, request_for(geometries));
     for (const MeasureRow& row : measurement.rows) {
         const auto found =
             std::find(geometries.begin(), geometries.end(),

@@ -203,6 +203,13 @@ LayeredBsdf::Parts LayeredBsdf::albedo(const AirDirection& from, Side to) const 
     return sum;
 }
 
+Eigen::MatrixXd LayeredBsdf::diffusely_lit(const AirDirection& to) const {
+    Eigen::MatrixXd seen = emitting_->diffusely_lit(to.side, to, EmittingStack::Part::All);
+    for (int band = 0; band < bands(); ++band)
+        seen(band, band) += whole(band, to.side).specular_albedo(to.cosine);
+    return seen;
+}
+
 Eigen::MatrixXd LayeredBsdf::guided(const AirDirection& from) const {
     return emitting_ && is_sheet() ? emitting_->guided(from)
                                    : Eigen::MatrixXd::Zero(bands(), bands());

@@ -37,6 +37,8 @@ public:
     bool is_sheet() const { return !sheets_.empty(); }
     /// The model at a band, of a sheet as seen from above.
     const StackBsdf& at(int band) const { return whole(band, Side::Above); }
+    /// The same without what slabs scatter.
+    const StackBsdf& unscattered_at(int band) const { return unscattered(band, Side::Above); }
     /// (bands, bands), rows = emission: zero where no light can go from one band to another.
     const Eigen::MatrixXd& coupling() const { return coupling_; }
     /// The dyes' own light; null where no slab holds any.
@@ -55,6 +57,10 @@ public:
     Parts parts(const kernels::Vec3& wi, const kernels::Vec3& wo) const;
     /// Directional-hemispherical shares on a side, deltas included, unit 1.
     Parts albedo(const AirDirection& from, Side to) const;
+    /// Radiance in a direction of light that comes from all directions of its side alike, over a
+    /// perfect diffuser's, the mirror's reflection included: (bands, bands), rows = emission. For
+    /// layers with dyes alone; without them it is the transposed albedo over a transposed matrix.
+    Eigen::MatrixXd diffusely_lit(const AirDirection& to) const;
     /// Share that total reflection guides in a sheet for ever: (bands, bands), rows = emission.
     Eigen::MatrixXd guided(const AirDirection& from) const;
     /// The diffuse part of `parts` and of `albedo`, for directions above the surface.

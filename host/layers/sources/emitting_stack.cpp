@@ -66,7 +66,7 @@ EmittingStack::EmittingStack(DyedStack stack, int cells_per_octave) : stack_(std
 }
 
 EmittingStack::Level EmittingStack::make_level(int cells_per_octave) const {
-    Level level{cells_of(stack_, cells_per_octave), {}, nullptr, nullptr};
+    Level level{cells_of(stack_, cells_per_octave), {}, {}, nullptr, nullptr};
     level.by_band.resize(stack_.by_band.size());
     const auto like_the_last = [&](std::size_t band) {
         return band > 0 && stack_.by_band[band] == stack_.by_band[band - 1];
@@ -78,38 +78,65 @@ EmittingStack::Level EmittingStack::make_level(int cells_per_octave) const {
     for (std::size_t band = 1; band < level.by_band.size(); ++band)
         if (!level.by_band[band])
             level.by_band[band] = level.by_band[band - 1];
+    make_scattering(level);
     make_series(level);
     return level;
 }
 
+void EmittingStack::make_scattering(Level& level) const {
+    level.scattering.resize(stack_.by_band.size());
+    tbb::parallel_for(std::size_t{0}, level.scattering.size(), [&](std::size_t band) {
+        const auto dyes =
+            scattering_dyes(stack_.by_band[band], stack_.slabs, static_cast<Eigen::Index>(band));
+        if (dyes)
+            level.scattering[band] = {source_transport(dyes->stack, level.cells), dyes->depths};
+    });
+}
+
 EmittingStack::Level EmittingStack::make_coarser(const Level& fine) const {
-    Level level{coarser(fine.cells), {}, nullptr, nullptr};
+    Level level{coarser(fine.cells), {}, {}, nullptr, nullptr};
     Eigen::Index cells = 0;
     for (const DepthCells& own : fine.cells)
         cells += own.count();
     for (const auto& transport : fine.by_band)
         level.by_band.push_back(coarse_sources(transport, cells));
+    for (const ScatteringTransport& own : fine.scattering)
+        level.scattering.push_back(
+            own.transport ? ScatteringTransport{coarse_sources(own.transport, cells), own.depths}
+                          : ScatteringTransport{});
     make_series(level);
     return level;
 }
 
 void EmittingStack::make_series(Level& level) const {
-    level.all =
-        std::make_shared<ReEmission>(level.by_band, level.cells, stack_.slabs, stack_.substrate);
+    level.all = std::make_shared<ReEmission>(level.by_band, level.cells, stack_.slabs,
+                                             stack_.substrate, level.scattering);
     level.slabs_alone = stack_.substrate.size() == 0
                             ? level.all
                             : std::make_shared<ReEmission>(level.by_band, level.cells, stack_.slabs,
-                                                           Eigen::MatrixXd());
+                                                           Eigen::MatrixXd(), level.scattering);
 }
 
+const ReEmission& EmittingStack::series_of(const Level& level, Part part) const {
+    return part == Part::All ? *level.all : *level.slabs_alone;
+}
+
+/// What every source sends out, by excitation, of what `reached` says of each band's transport.
+template <typename Reached>
 std::vector<Eigen::MatrixXd> EmittingStack::sent_by(const ReEmission& series,
-                                                    const AirDirection& from) const {
+                                                    const Reached& reached) const {
     std::vector<Eigen::MatrixXd> sent(static_cast<std::size_t>(bands()));
     tbb::parallel_for(Eigen::Index{0}, bands(), [&](Eigen::Index band) {
-        sent[static_cast<std::size_t>(band)] =
-            series.sent(band, series.at(band).reached(from.cosine, from.side));
+        sent[static_cast<std::size_t>(band)] = series.sent(band, reached(series.at(band)));
     });
     return sent;
+}
+
+std::vector<Eigen::MatrixXd> EmittingStack::sent_from(const ReEmission& series,
+                                                      const AirDirection& from) const {
+    return sent_by(series, [&](const SourceTransport& transport) {
+        return transport.reached(from.cosine, from.side);
+    });
 }
 
 std::shared_ptr<const EmittingStack::Sent> EmittingStack::sent(const AirDirection& from,
@@ -119,11 +146,9 @@ std::shared_ptr<const EmittingStack::Sent> EmittingStack::sent(const AirDirectio
     for (const auto& known : recent_)
         if (known->from == from && known->part == part)
             return known;
-    const auto series = [&](const Level& level) -> const ReEmission& {
-        return part == Part::All ? *level.all : *level.slabs_alone;
-    };
-    auto made = std::make_shared<const Sent>(
-        Sent{from, part, sent_by(series(levels_[0]), from), sent_by(series(levels_[1]), from)});
+    auto made =
+        std::make_shared<const Sent>(Sent{from, part, sent_from(series_of(levels_[0], part), from),
+                                          sent_from(series_of(levels_[1], part), from)});
     recent_.push_front(made);
     if (recent_.size() > most_kept)
         recent_.pop_back();
@@ -160,6 +185,21 @@ Eigen::MatrixXd EmittingStack::albedo(const AirDirection& from, Side to, Part pa
                         [&](const SourceTransport& transport) { return transport.escaped(to); });
 }
 
+Eigen::MatrixXd EmittingStack::diffusely_lit(Side from, const AirDirection& to, Part part) const {
+    // by reciprocity a source is reached by unit irradiance as it sends its light out there
+    const auto reached = [&](const SourceTransport& transport) {
+        return Eigen::VectorXd(transport.escaped(from).cwiseProduct(transport.weights()));
+    };
+    const Sent lit{{},
+                   part,
+                   sent_by(series_of(levels_[0], part), reached),
+                   sent_by(series_of(levels_[1], part), reached)};
+    return extrapolated(lit, [&](const SourceTransport& transport) {
+        return Eigen::VectorXd(
+            transport.reached(to.cosine, to.side).cwiseQuotient(transport.weights()));
+    });
+}
+
 Eigen::MatrixXd EmittingStack::guided(const AirDirection& from) const {
     return extrapolated(*sent(from, Part::All),
                         [](const SourceTransport& transport) { return transport.guided(); });
@@ -186,8 +226,8 @@ Eigen::MatrixXd EmittingStack::probe(const Level& coarse, const Level& fine) con
     Eigen::Index column = 0;
     for (const double cosine : {1.0, 0.3}) {
         const AirDirection from{cosine, Side::Above};
-        const std::vector<Eigen::MatrixXd> of_fine = sent_by(*fine.all, from);
-        const std::vector<Eigen::MatrixXd> of_coarse = sent_by(*coarse.all, from);
+        const std::vector<Eigen::MatrixXd> of_fine = sent_from(*fine.all, from);
+        const std::vector<Eigen::MatrixXd> of_coarse = sent_from(*coarse.all, from);
         for (Eigen::Index i = 0; i < bands(); ++i, ++column) {
             const auto k = static_cast<std::size_t>(i);
             for (Eigen::Index o = 0; o < bands(); ++o) {

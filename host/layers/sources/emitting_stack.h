@@ -63,6 +63,10 @@ public:
     Eigen::MatrixXd value(const AirDirection& from, const AirDirection& to, Part part) const;
     /// Returns its directional-hemispherical share on a side, unit 1, likewise.
     Eigen::MatrixXd albedo(const AirDirection& from, Side to, Part part) const;
+    /// Returns what is seen in a direction of light that comes from all directions of a side alike,
+    /// over what a perfect diffuser in the stack's place would show, likewise: the integral of
+    /// `value` over where light comes from.
+    Eigen::MatrixXd diffusely_lit(Side from, const AirDirection& to, Part part) const;
     /// Returns the share that is guided for ever by total reflection, likewise.
     Eigen::MatrixXd guided(const AirDirection& from) const;
 
@@ -83,6 +87,7 @@ private:
     struct Level {
         StackCells cells;
         std::vector<std::shared_ptr<const SourceTransport>> by_band;
+        std::vector<ScatteringTransport> scattering; ///< by band
         std::shared_ptr<const ReEmission> all, slabs_alone;
     };
     /// What every source sends out, (sources, bands), by excitation, with coarse and fine cells.
@@ -93,9 +98,14 @@ private:
     };
 
     Level make_level(int cells_per_octave) const;
+    void make_scattering(Level& level) const;
     Level make_coarser(const Level& fine) const;
     void make_series(Level& level) const;
-    std::vector<Eigen::MatrixXd> sent_by(const ReEmission& series, const AirDirection& from) const;
+    const ReEmission& series_of(const Level& level, Part part) const;
+    template <typename Reached>
+    std::vector<Eigen::MatrixXd> sent_by(const ReEmission& series, const Reached& reached) const;
+    std::vector<Eigen::MatrixXd> sent_from(const ReEmission& series,
+                                           const AirDirection& from) const;
     std::shared_ptr<const Sent> sent(const AirDirection& from, Part part) const;
     Eigen::MatrixXd probe(const Level& coarse, const Level& fine) const;
     template <typename Weigh>

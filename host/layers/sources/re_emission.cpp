@@ -31,7 +31,8 @@ void check_series(const Eigen::MatrixXd& sum) {
 
 ReEmission::ReEmission(std::vector<std::shared_ptr<const SourceTransport>> by_band,
                        const StackCells& cells, const std::vector<Eigen::MatrixXd>& slabs,
-                       const Eigen::MatrixXd& substrate)
+                       const Eigen::MatrixXd& substrate,
+                       const std::vector<ScatteringTransport>& scattering)
     : by_band_(std::move(by_band)) {
     Eigen::Index first = 0;
     for (std::size_t slab = 0; slab < cells.size(); ++slab) {
@@ -41,24 +42,52 @@ ReEmission::ReEmission(std::vector<std::shared_ptr<const SourceTransport>> by_ba
         Eigen::VectorXd shares(count);
         for (int cell = 0; cell < count; ++cell)
             shares(cell) = cells[slab].share(cell);
-        groups_.push_back({first, shares, slabs[slab]});
+        groups_.push_back({first, shares, slabs[slab], slab});
         first += count;
     }
     if (substrate.size() > 0)
-        groups_.push_back({first, Eigen::VectorXd::Ones(1), substrate});
+        groups_.push_back({first, Eigen::VectorXd::Ones(1), substrate, cells.size()});
     for (const Group& group : groups_)
         stokes_only_ = stokes_only_ && is_lower(group.emission);
     for (Eigen::Index band = 0; band < bands(); ++band) {
         const Eigen::VectorXd within = within_band(band);
-        const Eigen::Index n = within.size();
         own_series_.emplace_back();
         if ((within.array() != 0.0).any()) {
-            const auto one = Eigen::MatrixXd::Identity(n, n);
             own_series_.back() =
-                left_quotient(one - within.asDiagonal() * at(band).exchange(), one);
+                series_within(band, within, scattering[static_cast<std::size_t>(band)]);
             check_series(own_series_.back());
         }
     }
+}
+
+/// What sources send out in a band in the end of what they send out in it first: (I - S K)^-1. Of S
+/// = E + R, where E is what dyes scatter and L the exchange with that scattering, it is (I + E L)
+/// (I - R L)^-1; of each column, what is not sent out again within the band is made to be all that
+/// came, as it is without scattering.
+Eigen::MatrixXd ReEmission::series_within(Eigen::Index band, const Eigen::VectorXd& within,
+                                          const ScatteringTransport& scattering) const {
+    const Eigen::Index n = within.size();
+    const auto one = Eigen::MatrixXd::Identity(n, n);
+    const Eigen::MatrixXd again = within.asDiagonal() * at(band).exchange();
+    if (!scattering.transport)
+        return left_quotient(one - again, one);
+    const Eigen::VectorXd elastic = scattered(scattering.depths);
+    const Eigen::MatrixXd& exchange = scattering.transport->exchange();
+    const Eigen::MatrixXd first =
+        left_quotient(one - (within - elastic).asDiagonal() * exchange, one);
+    Eigen::MatrixXd series = first + elastic.asDiagonal() * (exchange * first);
+    const Eigen::RowVectorXd lost = Eigen::RowVectorXd::Ones(n) - again.colwise().sum();
+    const Eigen::RowVectorXd all = lost * series;
+    return series * all.cwiseInverse().asDiagonal();
+}
+
+/// The optical depths of cells that scatter.
+Eigen::VectorXd ReEmission::scattered(const std::vector<double>& depths) const {
+    Eigen::VectorXd scattered = Eigen::VectorXd::Zero(at(0).sources());
+    for (const Group& group : groups_)
+        if (group.slab < depths.size())
+            scattered.segment(group.first, group.shares.size()) = depths[group.slab] * group.shares;
+    return scattered;
 }
 
 /// What sources send out in a band of what reaches them in the same one.

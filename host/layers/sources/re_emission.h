@@ -1,5 +1,6 @@
 #pragma once
 
+#include "host/layers/sources/scattering_dyes.h"
 #include "host/layers/sources/source_transport.h"
 
 #include <Eigen/Core>
@@ -21,9 +22,11 @@ class ReEmission {
 public:
     /// `by_band` holds one transport for each band, all with the same sources; `slabs` what each
     /// slab's dyes send out, empty for one without; `substrate` its matrix, (bands, bands), empty
-    /// where there is none or where what it sends out is left out.
+    /// where there is none or where what it sends out is left out. `scattering` holds a transport
+    /// for each band in which dyes scatter.
     ReEmission(std::vector<std::shared_ptr<const SourceTransport>> by_band, const StackCells& cells,
-               const std::vector<Eigen::MatrixXd>& slabs, const Eigen::MatrixXd& substrate);
+               const std::vector<Eigen::MatrixXd>& slabs, const Eigen::MatrixXd& substrate,
+               const std::vector<ScatteringTransport>& scattering);
 
     /// True where nothing is sent out in a band below the one that excites it.
     bool shifts_up() const { return stokes_only_; }
@@ -42,9 +45,13 @@ private:
         Eigen::Index first;
         Eigen::VectorXd shares;
         Eigen::MatrixXd emission;
+        std::size_t slab; ///< index; of the substrate beyond all slabs
     };
 
     Eigen::VectorXd within_band(Eigen::Index band) const;
+    Eigen::VectorXd scattered(const std::vector<double>& depths) const;
+    Eigen::MatrixXd series_within(Eigen::Index band, const Eigen::VectorXd& within,
+                                  const ScatteringTransport& scattering) const;
     Eigen::VectorXd driven(Eigen::Index band, const Eigen::MatrixXd& reached) const;
     Eigen::MatrixXd pass(Eigen::Index excitation, const Eigen::VectorXd& reached,
                          Eigen::MatrixXd sent) const;

@@ -12,7 +12,8 @@ using RaySink = std::function<void(std::span<const RayRecord> rays, bool shadow,
 
 /// Functions that a render calls on its way.
 struct RenderHooks {
-    RaySink on_rays; ///< may be empty
+    RaySink on_rays = {};                 ///< may be empty
+    std::function<void()> on_set_up = {}; ///< tables and kernels are ready; may be empty
 };
 
 } // namespace reradiant

@@ -58,6 +58,8 @@ RenderRun::RenderRun(const Scene& scene, const Device& device, const RenderOptio
     result_.plan = plan_.wavelengths;
     result_.setup_seconds = seconds_since(start_) - result_.build.seconds;
     rendering_ = Clock::now();
+    if (options.hooks && options.hooks->on_set_up)
+        options.hooks->on_set_up();
 }
 
 void RenderRun::resume() {

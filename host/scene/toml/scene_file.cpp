@@ -2,6 +2,8 @@
 
 #include "host/base/logging.h"
 #include "host/scene/mitsuba/mitsuba_import.h"
+#include "host/scene/model/joined_materials.h"
+#include "host/scene/model/matrix_grids.h"
 #include "host/scene/model/surface_builder.h"
 #include "host/scene/model/textured_value.h"
 #include "host/scene/toml/material_reader.h"
@@ -103,6 +105,14 @@ void warn_outside_bands(const Scene& scene, const LoadState& state) {
     state.warn_outside(range[0], range[1]);
 }
 
+/// The wavelengths that a material by itself is used at.
+std::array<double, 2> used_range_nm(const Material& material,
+                                    const std::optional<WavelengthGrid>& bands) {
+    const std::optional<WavelengthGrid> grid = bands ? bands : common_grid(matrices_of(material));
+    return grid ? std::array{grid->from_nm, grid->to_nm()}
+                : default_range_nm(material.is_fluorescent());
+}
+
 /// Constant environments add up to one; an image is looked up alone.
 void read_lights(const TableReader& root, Scene& scene, LoadState& state) {
     const auto lights = root.tables("light");
@@ -150,10 +160,18 @@ Scene load_scene(const std::filesystem::path& file) {
     LoadState state;
     const std::string text = read_file(file, {file.string()}, MAX_TOML_BYTES);
     state.add_to_digest(text);
-    return read_scene(parse_toml(file.string(), text), file, state);
+    Scene scene = read_scene(parse_toml(file.string(), text), file, state);
+    join_layers(scene);
+    return scene;
 }
 
 Scene scene_from_table(const toml::table& table, const std::filesystem::path& file) {
+    Scene scene = scene_as_written(table, file);
+    join_layers(scene);
+    return scene;
+}
+
+Scene scene_as_written(const toml::table& table, const std::filesystem::path& file) {
     LoadState state;
     std::ostringstream text;
     text << toml::toml_formatter(table);
@@ -165,11 +183,13 @@ toml::table read_scene_table(const std::filesystem::path& file) {
     return parse_toml(file.string(), read_file(file, {file.string()}, MAX_TOML_BYTES));
 }
 
-Material load_material(const std::filesystem::path& file) {
-    return material_from_table(read_scene_table(file), file);
+Material load_material(const std::filesystem::path& file,
+                       const std::optional<WavelengthGrid>& bands) {
+    return material_from_table(read_scene_table(file), file, bands);
 }
 
-Material material_from_table(const toml::table& table, const std::filesystem::path& file) {
+Material material_from_table(const toml::table& table, const std::filesystem::path& file,
+                             const std::optional<WavelengthGrid>& bands) {
     LoadState state;
     const TableReader root(table, file.string(), "a material file", {"material", "texture"});
     const toml::node& node = root.required("material");
@@ -186,8 +206,9 @@ Material material_from_table(const toml::table& table, const std::filesystem::pa
     if (!reading.mixed_with.empty())
         logging::info("{}: the mixture with \"{}\" is left out", file.string(), reading.mixed_with);
     Material material = std::move(reading.representative);
-    const auto range = default_range_nm(material.is_fluorescent());
+    const std::array<double, 2> range = used_range_nm(material, bands);
     state.warn_outside(range[0], range[1]);
+    join_layers(material);
     return material;
 }
 

@@ -92,15 +92,19 @@ SeenColour seen(const Directions& directions, const DirectionalMatrix& matrix,
     return colour;
 }
 
+/// Photons that leave in other bands over those that do not leave as they came.
 double quantum_yield(const CellMeasurement& cell, const Spectrum& illuminant) {
     const int n = cell.bands.count;
     const Eigen::VectorXd light = on_bands(illuminant, cell.bands);
+    Eigen::MatrixXd leaving = cell.matrix;
+    if (cell.of_sheet())
+        leaving += cell.transmitted;
     std::vector<double> emitted(static_cast<std::size_t>(n), 0.0);
     for (int i = 0; i < n; ++i)
         for (int o = 0; o < n; ++o)
             if (o != i)
                 emitted[static_cast<std::size_t>(i)] +=
-                    cell.matrix(o, i) * cell.bands.centre_nm(o) / cell.bands.centre_nm(i);
+                    leaving(o, i) * cell.bands.centre_nm(o) / cell.bands.centre_nm(i);
     const double strongest = *std::max_element(emitted.begin(), emitted.end());
     double out = 0.0, in = 0.0;
     for (int i = 0; i < n; ++i) {
@@ -108,10 +112,54 @@ double quantum_yield(const CellMeasurement& cell, const Spectrum& illuminant) {
         if (!(emitted[k] > least_excitation * strongest))
             continue;
         const double photons = light(i) * cell.bands.centre_nm(i);
+        const double straight = cell.of_sheet() ? cell.straight[k] : 0.0;
         out += photons * emitted[k];
-        in += photons * (1.0 - cell.matrix(i, i) - cell.specular[k]);
+        in += photons * (1.0 - leaving(i, i) - cell.specular[k] - straight);
     }
     return in > 0.0 ? out / in : not_a_number;
+}
+
+/// Luminous flux that a matrix and a diagonal make of a lamp's; that of the lamp is 100.
+double luminous_share(const Eigen::MatrixXd& matrix, const std::vector<double>& diagonal,
+                      const Spectrum& illuminant, const WavelengthGrid& bands) {
+    const std::vector<Xyz> weights = xyz_weights(bands);
+    const Eigen::VectorXd light = on_bands(illuminant, bands);
+    Eigen::VectorXd leaving = matrix * light;
+    for (std::size_t band = 0; band < diagonal.size(); ++band) {
+        const auto k = static_cast<Eigen::Index>(band);
+        leaving(k) += diagonal[band] * light(k);
+    }
+    return 100.0 * weighted(leaving, weights)[1] / weighted(light, weights)[1];
+}
+
+void add_whole_sample(SeenColour& colour, const CellMeasurement& cell, const Spectrum& lamp) {
+    colour.quantum_yield = quantum_yield(cell, lamp);
+    colour.reflected = luminous_share(cell.matrix, cell.specular, lamp, cell.bands);
+    if (!cell.of_sheet())
+        return;
+    colour.transmitted = luminous_share(cell.transmitted, cell.straight, lamp, cell.bands);
+    colour.guided = luminous_share(cell.guided, {}, lamp, cell.bands);
+}
+
+void add_hemispherical(const MeasureRow& row, CellMeasurement& cell) {
+    const int o = cell.bands.band_of(row.lambda_o_nm), i = cell.bands.band_of(row.lambda_i_nm);
+    switch (row.part) {
+    case MeasuredPart::Specular:
+        cell.specular[static_cast<std::size_t>(o)] += row.value;
+        return;
+    case MeasuredPart::TransmittedSpecular:
+        cell.straight[static_cast<std::size_t>(o)] += row.value;
+        return;
+    case MeasuredPart::Transmitted:
+        cell.transmitted(o, i) += row.value;
+        return;
+    case MeasuredPart::Guided:
+        cell.guided(o, i) += row.value;
+        return;
+    case MeasuredPart::Diffuse:
+    case MeasuredPart::Slab:
+        cell.matrix(o, i) += row.value;
+    }
 }
 
 void measure_hemispherical(const Material& material, MeasureRequest request,
@@ -119,22 +167,34 @@ void measure_hemispherical(const Material& material, MeasureRequest request,
     request.hemispherical = true;
     request.theta_i_deg = {request.theta_i_deg.front()};
     const Measurement measurement = measure_material(material, request);
-    const DirectionalMatrix matrix = by_directions(measurement).begin()->second;
+    const int n = measurement.bands.count;
     cell.bands = measurement.bands;
-    cell.matrix = matrix.diffuse;
-    cell.specular.assign(matrix.specular.begin(), matrix.specular.end());
+    cell.matrix = Eigen::MatrixXd::Zero(n, n);
+    cell.specular.assign(static_cast<std::size_t>(n), 0.0);
+    if (measurement.of_sheet) {
+        cell.transmitted = cell.guided = cell.matrix;
+        cell.straight = cell.specular;
+    }
+    for (const MeasureRow& row : measurement.rows)
+        add_hemispherical(row, cell);
 }
 
 PolarCurve polar_curve(const std::map<Directions, DirectionalMatrix>& matrices, double theta_i,
-                       const NamedIlluminant& illuminant, const WavelengthGrid& bands) {
+                       const std::vector<double>& angles, const NamedIlluminant& illuminant,
+                       const WavelengthGrid& bands) {
     const std::vector<Xyz> weights = xyz_weights(bands);
     const Eigen::VectorXd light = on_bands(illuminant.spectrum, bands);
     const double white = weighted(light, weights)[1];
     PolarCurve curve{theta_i, {}, {}, {}};
-    for (double angle = -polar_limit_deg; angle <= polar_limit_deg; angle += polar_step_deg) {
+    for (const double angle : angles) {
+        curve.angle_deg.push_back(angle);
+        if (std::isnan(angle)) {
+            curve.diffuse.push_back(not_a_number);
+            curve.total.push_back(not_a_number);
+            continue;
+        }
         const DirectionalMatrix& matrix =
             matrices.at({theta_i, std::abs(angle), angle < 0.0 ? 0.0 : 180.0});
-        curve.angle_deg.push_back(angle);
         curve.diffuse.push_back(weighted(std::numbers::pi * (matrix.diffuse * light), weights)[1] /
                                 white);
         curve.total.push_back(weighted(factor_times_light(matrix, light), weights)[1] / white);
@@ -142,18 +202,38 @@ PolarCurve polar_curve(const std::map<Directions, DirectionalMatrix>& matrices, 
     return curve;
 }
 
-std::vector<double> polar_angles() {
+/// Angles of a polar curve, from the light's side to the mirror's; NaN keeps both sides of a sheet
+/// apart.
+std::vector<double> polar_angles(bool of_sheet) {
     std::vector<double> angles;
-    for (double angle = 0.0; angle <= polar_limit_deg; angle += polar_step_deg)
+    if (of_sheet) {
+        for (double angle = -180.0; angle <= polar_limit_deg - 180.0; angle += polar_step_deg)
+            angles.push_back(angle);
+        angles.push_back(not_a_number);
+    }
+    for (double angle = -polar_limit_deg; angle <= polar_limit_deg; angle += polar_step_deg)
         angles.push_back(angle);
+    if (of_sheet) {
+        angles.push_back(not_a_number);
+        for (double angle = 180.0 - polar_limit_deg; angle <= 180.0; angle += polar_step_deg)
+            angles.push_back(angle);
+    }
     return angles;
+}
+
+/// Polar angles that are looked at for a curve.
+std::vector<double> thetas_of(const std::vector<double>& angles) {
+    std::vector<double> thetas;
+    for (const double angle : angles)
+        if (angle >= 0.0)
+            thetas.push_back(angle);
+    return thetas;
 }
 
 } // namespace
 
 CellMeasurement measure_cell(const Material& material, const StudyMeasuring& measuring,
                              const std::vector<NamedIlluminant>& illuminants) {
-    refuse_measured_sheet(material, material.position);
     CellMeasurement cell;
     MeasureRequest request;
     request.model = measuring.model;
@@ -168,14 +248,15 @@ CellMeasurement measure_cell(const Material& material, const StudyMeasuring& mea
     for (const auto& [directions, matrix] : by_directions(directional))
         for (const NamedIlluminant& illuminant : illuminants) {
             cell.colours.push_back(seen(directions, matrix, illuminant, cell.bands));
-            cell.colours.back().quantum_yield = quantum_yield(cell, illuminant.spectrum);
+            add_whole_sample(cell.colours.back(), cell, illuminant.spectrum);
         }
 
-    request.theta_o_deg = polar_angles();
+    const std::vector<double> angles = polar_angles(cell.of_sheet());
+    request.theta_o_deg = thetas_of(angles);
     request.phi_deg = {0.0, 180.0};
     const auto plane = by_directions(measure_material(material, request));
     for (const double theta_i : measuring.theta_i_deg)
-        cell.polar.push_back(polar_curve(plane, theta_i, illuminants.front(), cell.bands));
+        cell.polar.push_back(polar_curve(plane, theta_i, angles, illuminants.front(), cell.bands));
     return cell;
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,22 +25,33 @@ struct SeenColour {
     /// Photons re-radiated over photons absorbed, by the whole sample, hemispherically, at the
     /// bands that excite; NaN when nothing fluoresces.
     double quantum_yield = 0.0;
+    /// Luminous flux into all directions, of light at the first theta_i, the mirror's and what goes
+    /// straight on included; the lamp's is 100. NaN for what an opaque sample has not.
+    double reflected = std::numeric_limits<double>::quiet_NaN(), transmitted = reflected,
+           guided = reflected;
 };
 
 /// Luminance factor in the plane of incidence, under the first illuminant.
 struct PolarCurve {
     double theta_i_deg = 0.0;
-    std::vector<double> angle_deg; ///< -85..85, negative on the side that the light comes from
+    /// -85..85, negative on the side that the light comes from; of a sheet -180..180, with what it
+    /// transmits from 95 on and NaN in between.
+    std::vector<double> angle_deg;
     std::vector<double> diffuse, total;
 };
 
 struct CellMeasurement {
     WavelengthGrid bands;
     std::vector<SeenColour> colours;
-    /// Directional-hemispherical at the first theta_i, per-band: what the substrate and dyes in
-    /// layers send back.
+    /// Directional-hemispherical at the first theta_i, per-band: what the substrate and slabs send
+    /// back.
     Eigen::MatrixXd matrix;
-    std::vector<double> specular; ///< likewise, of light that never reached the substrate
+    std::vector<double> specular; ///< likewise, of light that met neither
+    /// Likewise of a sheet, on its far side, and what it guides for ever; empty for others.
+    Eigen::MatrixXd transmitted, guided;
+    std::vector<double> straight; ///< what no slab scattered, on the far side
+
+    bool of_sheet() const { return transmitted.size() > 0; }
     std::vector<PolarCurve> polar;
     std::vector<std::string> notes;
 };

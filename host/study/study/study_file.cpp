@@ -1,6 +1,8 @@
 #include "host/study/study/study_file.h"
 
+#include "host/base/quiet_log.h"
 #include "host/scene/document/load_state.h"
+#include "host/scene/model/matrix_grids.h"
 #include "host/scene/toml/scene_table.h"
 #include "host/study/study/sample_scene.h"
 #include "host/study/study/sweep_apply.h"
@@ -24,6 +26,8 @@ namespace {
 
 constexpr int most_film_size = 4096;
 constexpr int default_film_size = 96;
+const std::vector<std::string> measure_keys{"theta_i_deg", "theta_o_deg", "phi_deg",
+                                            "illuminants", "model",       "samples"};
 
 /// Reads one STUDY.toml.
 class StudyReader {
@@ -81,10 +85,9 @@ private:
     }
 
     void read_measuring() {
-        const TableReader reader = root_.table("measure", {"theta_i_deg", "theta_o_deg", "phi_deg",
-                                                           "illuminants", "model", "samples"});
+        const TableReader reader = root_.table("measure", measure_keys);
         StudyMeasuring measuring;
-        const NumberRange polar{.low = 0.0, .high = 90.0, .high_is_allowed = false};
+        const NumberRange polar = NumberRange::within(0.0, 180.0);
         const auto angles = [&](const char* key, const NumberRange& range,
                                 std::vector<double>& values) {
             if (!reader.has(key))
@@ -97,6 +100,11 @@ private:
         angles("theta_i_deg", polar, measuring.theta_i_deg);
         angles("theta_o_deg", polar, measuring.theta_o_deg);
         angles("phi_deg", NumberRange::within(-360.0, 360.0), measuring.phi_deg);
+        for (const auto& [key, values] : {std::pair("theta_i_deg", &measuring.theta_i_deg),
+                                          std::pair("theta_o_deg", &measuring.theta_o_deg)})
+            if (std::find(values->begin(), values->end(), 90.0) != values->end())
+                reader.fail(key, fmt::format("{} of 90 degrees is along the surface", key),
+                            "give less, or of a sheet's far side more");
         measuring.theta_i_given = reader.has("theta_i_deg");
         measuring.illuminants_given = reader.has("illuminants");
         if (measuring.illuminants_given)
@@ -138,13 +146,43 @@ private:
             study_.base["film"].as_table()->insert_or_assign("width", width_);
             study_.base["film"].as_table()->insert_or_assign("height", height_);
         }
+        if (study_.is_sample && study_.measuring && !study_.rendering)
+            set_measured_bands();
         const Scene scene = scene_with(study_, {}); // refuses what is wrong in itself
         if (has_scene)
             choose_material(scene);
         if (study_.measuring)
             for (const Material& material : scene.materials)
-                if (material.name == study_.material)
-                    refuse_measured_sheet(material, root_.position_of_key("measure"));
+                if (material.name == study_.material && !material.stack.is_sheet())
+                    refuse_far_side(*study_.measuring);
+    }
+
+    /// Where nothing is rendered, spectra are used on the bands that are measured: those of the
+    /// material's matrices, if it has any.
+    void set_measured_bands() {
+        const QuietLog quiet;
+        const Scene scene = scene_with(study_, {});
+        const auto grid = common_grid(matrices_of(scene.materials.front()));
+        if (grid)
+            study_.base["film"].as_table()->insert_or_assign("bands_nm",
+                                                             toml::table{{"from", grid->from_nm},
+                                                                         {"to", grid->to_nm()},
+                                                                         {"step", grid->step_nm}});
+    }
+
+    /// What is opaque has no far side to be lit or seen from.
+    void refuse_far_side(const StudyMeasuring& measuring) const {
+        const TableReader reader = root_.table("measure", measure_keys);
+        for (const auto& [key, angles] : {std::pair("theta_i_deg", &measuring.theta_i_deg),
+                                          std::pair("theta_o_deg", &measuring.theta_o_deg)})
+            for (const double angle : *angles)
+                if (angle > 90.0)
+                    reader.fail(
+                        key,
+                        fmt::format("{} of {:g} degrees lies beneath the material, which is opaque",
+                                    key, angle),
+                        "angles from the normal lie between 0 and below 90 degrees; a sheet "
+                        "(substrate type \"none\") has two sides");
     }
 
     /// A file that a key names; input Error at the key when it is not there.
@@ -215,13 +253,6 @@ std::vector<std::size_t> Study::cell_values(std::size_t cell) const {
         cell /= sweeps[k].values.size();
     }
     return indices;
-}
-
-void refuse_measured_sheet(const Material& material, const SourcePosition& at) {
-    if (material.stack.is_sheet())
-        throw_input_error(at,
-                          "a study measures what is reflected, and a sheet transmits light as well",
-                          "leave [measure] out, or use `reradiant measure` for what a sheet does");
 }
 
 Study load_study(const fs::path& file) {

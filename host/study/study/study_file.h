@@ -46,7 +46,8 @@ struct StudyRendering {
     std::optional<double> exposure_ev; ///< for all pictures; empty: chosen by what they show
 };
 
-/// A virtual goniophotometer's angles, in degrees, and the light that colours are seen under.
+/// A virtual goniophotometer's angles, in degrees, and the light that colours are seen under. Of
+/// sheets, thetas above 90 lie beneath: there is what they transmit.
 struct StudyMeasuring {
     std::vector<double> theta_i_deg{45.0}, theta_o_deg{0.0}, phi_deg{0.0};
     std::vector<std::string> illuminants{"D65"};
@@ -78,8 +79,5 @@ struct Study {
 /// what cannot be: no sweep, an empty one, two of one parameter, a value twice, a key that the
 /// scene does not have, angles that are swept and given, too many cells.
 Study load_study(const std::filesystem::path& file);
-
-/// Input Error at `at` for a sheet, which a study does not measure.
-void refuse_measured_sheet(const Material& material, const SourcePosition& at);
 
 } // namespace reradiant

@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 namespace reradiant {
 
@@ -57,6 +56,9 @@ Json colour_json(const SeenColour& colour) {
             {"XYZ", list_json(colour.xyz)},
             {"Lab", list_json(colour.lab)},
             {"quantum_yield", finite_or_null(colour.quantum_yield)},
+            {"reflected", finite_or_null(colour.reflected)},
+            {"transmitted", finite_or_null(colour.transmitted)},
+            {"guided", finite_or_null(colour.guided)},
             {"beta_T", list_json(colour.beta_t)}};
 }
 
@@ -68,7 +70,18 @@ SeenColour colour_from(const Json& json) {
             triple_from(json.at("XYZ")),
             triple_from(json.at("Lab")),
             list_from(json.at("beta_T")),
-            number_from(json.at("quantum_yield"))};
+            number_from(json.at("quantum_yield")),
+            number_from(json.at("reflected")),
+            number_from(json.at("transmitted")),
+            number_from(json.at("guided"))};
+}
+
+Eigen::MatrixXd matrix_from(const Json& json, int bands) {
+    const std::vector<double> entries = list_from(json);
+    if (bands < 1 ||
+        entries.size() != static_cast<std::size_t>(bands) * static_cast<std::size_t>(bands))
+        throw_runtime_error("the cell's matrix has another size than its bands");
+    return Eigen::Map<const Eigen::MatrixXd>(entries.data(), bands, bands);
 }
 
 CellMeasurement measurement_from(const Json& json) {
@@ -76,12 +89,13 @@ CellMeasurement measurement_from(const Json& json) {
     const Json& bands = json.at("bands");
     measurement.bands = {bands.at("from_nm").get<double>(), bands.at("step_nm").get<double>(),
                          whole_number<int>(bands.at("count"))};
-    const int n = measurement.bands.count;
-    const std::vector<double> entries = list_from(json.at("matrix"));
-    if (n < 1 || entries.size() != static_cast<std::size_t>(n) * static_cast<std::size_t>(n))
-        throw_runtime_error("the cell's matrix has another size than its bands");
-    measurement.matrix = Eigen::Map<const Eigen::MatrixXd>(entries.data(), n, n);
+    measurement.matrix = matrix_from(json.at("matrix"), measurement.bands.count);
     measurement.specular = list_from(json.at("specular"));
+    if (json.contains("transmitted")) {
+        measurement.transmitted = matrix_from(json.at("transmitted"), measurement.bands.count);
+        measurement.guided = matrix_from(json.at("guided"), measurement.bands.count);
+        measurement.straight = list_from(json.at("straight"));
+    }
     for (const Json& colour : json.at("colours"))
         measurement.colours.push_back(colour_from(colour));
     for (const Json& curve : json.at("polar"))
@@ -92,71 +106,24 @@ CellMeasurement measurement_from(const Json& json) {
     return measurement;
 }
 
-void keep_plots(const CellResult& cell, const CellMeasurement& measurement) {
+/// Writes a matrix that was measured, and its picture.
+void keep_matrix(const CellResult& cell, const CellMeasurement& measurement,
+                 const Eigen::MatrixXd& values, const std::string& name) {
     ReradiationMatrix matrix;
     matrix.emission = matrix.excitation = measurement.bands;
-    matrix.values = measurement.matrix;
+    matrix.values = values;
     matrix.geometry = fmt::format("{:g}/hemispherical", measurement.colours.front().theta_i_deg);
-    write_reradiation(cell.folder / "matrix.csv", matrix);
-    write_text_atomically(cell.folder / "matrix.svg", matrix_svg(measurement));
+    write_reradiation(cell.folder / (name + ".csv"), matrix);
+    write_text_atomically(cell.folder / (name + ".svg"), matrix_svg(measurement.bands, values));
+}
+
+void keep_plots(const CellResult& cell, const CellMeasurement& measurement) {
+    keep_matrix(cell, measurement, measurement.matrix, "matrix");
+    if (measurement.of_sheet())
+        keep_matrix(cell, measurement, measurement.transmitted, "transmitted");
     for (const PolarCurve& curve : measurement.polar)
         write_text_atomically(cell.folder / fmt::format("polar-{:g}.svg", curve.theta_i_deg),
                               polar_svg(curve, measurement.colours.front().illuminant));
-}
-
-/// A text as a field of a CSV: quoted where it holds a comma, a quote or a line's end.
-std::string csv_field(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos)
-        return text;
-    std::string quoted = "\"";
-    for (const char character : text)
-        quoted += character == '"' ? std::string("\"\"") : std::string(1, character);
-    return quoted + "\"";
-}
-
-/// Nothing stands for what is not known.
-std::string csv_number(double value) {
-    return std::isfinite(value) ? fmt::format("{:.9g}", value) : "";
-}
-
-/// Bands of all measurements: a swept matrix may bring its own.
-std::set<double> all_bands_nm(const StudyResult& result) {
-    std::set<double> all;
-    for (const CellResult& cell : result.cells)
-        if (cell.measurement)
-            for (const double nm : cell.measurement->bands.centres_nm())
-                all.insert(nm);
-    return all;
-}
-
-std::string colour_fields(const SeenColour& colour, const WavelengthGrid& bands,
-                          const std::set<double>& columns_nm) {
-    std::string text = csv_field(colour.illuminant);
-    for (const double value :
-         {colour.theta_i_deg, colour.theta_o_deg, colour.phi_deg, colour.xyz[0], colour.xyz[1],
-          colour.xyz[2], colour.lab[0], colour.lab[1], colour.lab[2], colour.quantum_yield})
-        text += fmt::format(",{}", csv_number(value));
-    const std::vector<double> centres = bands.centres_nm();
-    for (const double nm : columns_nm) {
-        const auto place = std::find(centres.begin(), centres.end(), nm);
-        text += ",";
-        if (place != centres.end())
-            text += csv_number(colour.beta_t[static_cast<std::size_t>(place - centres.begin())]);
-    }
-    return text;
-}
-
-/// Mean of an image; white is D65 with Y = 1, shown as 100.
-std::string image_fields(const CellResult& cell) {
-    const std::vector<Xyz> pixels = xyz_image(read_spectral_exr(cell.folder / "image.exr"));
-    Xyz mean{}, white = xyz_of(illuminant_with_luminance("D65", 100.0));
-    for (const Xyz& pixel : pixels)
-        for (std::size_t channel = 0; channel < 3; ++channel)
-            mean[channel] += 100.0 * pixel[channel] / static_cast<double>(pixels.size());
-    const auto lab = xyz_to_lab(mean, white);
-    return fmt::format(",,,,{},{},{},{},{},{},", csv_number(mean[0]), csv_number(mean[1]),
-                       csv_number(mean[2]), csv_number(lab[0]), csv_number(lab[1]),
-                       csv_number(lab[2]));
 }
 
 } // namespace
@@ -180,6 +147,11 @@ Json measurement_json(const CellMeasurement& measurement) {
                  {"specular", list_json(measurement.specular)},
                  {"polar", Json::array()},
                  {"notes", measurement.notes}};
+    if (measurement.of_sheet()) {
+        json["transmitted"] = list_json(measurement.transmitted.reshaped());
+        json["guided"] = list_json(measurement.guided.reshaped());
+        json["straight"] = list_json(measurement.straight);
+    }
     for (const SeenColour& colour : measurement.colours)
         json["colours"].push_back(colour_json(colour));
     for (const PolarCurve& curve : measurement.polar)
@@ -244,42 +216,17 @@ std::vector<ToldCell> told_cells(const std::string& text) {
     return cells;
 }
 
-std::string matrix_svg(const CellMeasurement& measurement) {
-    const std::vector<double> nm = measurement.bands.centres_nm();
+std::string matrix_svg(const WavelengthGrid& bands, const Eigen::MatrixXd& matrix) {
+    const std::vector<double> nm = bands.centres_nm();
     return svg::heat_map({"Re-radiation, square root", "excitation, nm", "emission, nm", nm, nm,
-                          measurement.matrix.cwiseSqrt(), false});
+                          matrix.cwiseSqrt(), false});
 }
 
 std::string polar_svg(const PolarCurve& curve, const std::string& illuminant) {
     return svg::polar_plot(fmt::format("Luminance factor under {}", illuminant),
                            {{"total", curve.angle_deg, curve.total},
-                            {"through the substrate", curve.angle_deg, curve.diffuse}},
+                            {"through slabs and substrate", curve.angle_deg, curve.diffuse}},
                            curve.theta_i_deg);
-}
-
-void write_study_table(const fs::path& file, const Study& study, const StudyResult& result) {
-    std::string head = "cell";
-    for (const Sweep& sweep : study.sweeps)
-        head += fmt::format(",{}", csv_field(sweep.label));
-    head += ",source,illuminant,theta_i_deg,theta_o_deg,phi_deg,X,Y,Z,L,a,b,quantum_yield";
-    const std::set<double> columns_nm = all_bands_nm(result);
-    for (const double nm : columns_nm)
-        head += fmt::format(",beta_T_{:g}nm", nm);
-    std::string rows;
-    for (const CellResult& cell : result.cells) {
-        std::string front = std::to_string(cell.index);
-        for (const std::string& label : cell.labels)
-            front += fmt::format(",{}", csv_field(label));
-        if (cell.has_image && !cell.failed())
-            rows += fmt::format("{},rendered,{}\n", front,
-                                image_fields(cell) + std::string(columns_nm.size(), ','));
-        if (!cell.measurement)
-            continue;
-        for (const SeenColour& colour : cell.measurement->colours)
-            rows += fmt::format("{},measured,{}\n", front,
-                                colour_fields(colour, cell.measurement->bands, columns_nm));
-    }
-    write_text_atomically(file, head + "\n" + rows);
 }
 
 } // namespace reradiant

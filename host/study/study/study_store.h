@@ -9,8 +9,9 @@ namespace reradiant {
 /// image.exr and image.png of a cell.
 void keep_image(CellResult& cell, const SpectralImage& image, double exposure_ev);
 
-/// matrix.csv, matrix.svg and polar-THETA.svg of what was measured, then cell.json, which says that
-/// the cell is done. `identity` is what its results depend on.
+/// matrix.csv, matrix.svg and polar-THETA.svg of what was measured, of a sheet also transmitted.csv
+/// and transmitted.svg, then cell.json, which says that the cell is done. `identity` is what its
+/// results depend on.
 void keep_cell(const CellResult& cell, const std::string& identity);
 
 /// Fills a cell from an earlier run; false when there is none, when it is of another identity, or
@@ -30,7 +31,7 @@ std::vector<ToldCell> told_cells(const std::string& text);
 nlohmann::ordered_json measurement_json(const CellMeasurement& measurement);
 
 /// The plots of a cell as SVG, for files and pages.
-std::string matrix_svg(const CellMeasurement& measurement);
+std::string matrix_svg(const WavelengthGrid& bands, const Eigen::MatrixXd& matrix);
 std::string polar_svg(const PolarCurve& curve, const std::string& illuminant);
 
 /// table.csv: a row for every colour that was seen, and for the mean of every image that was

@@ -1,6 +1,7 @@
 #include "host/study/study/sweep_apply.h"
 
 #include "host/scene/document/table_reader.h"
+#include "host/scene/model/joined_materials.h"
 #include "host/scene/toml/scene_table.h"
 #include "host/study/study/sample_scene.h"
 #include "host/study/study/toml_path.h"
@@ -164,9 +165,10 @@ Scene scene_with(const Study& study, const std::vector<ChosenValue>& values) {
     toml::table table = study.base;
     for (const ChosenValue& chosen : values)
         apply_to_table(table, chosen);
-    Scene scene = scene_from_table(table, study.base_file);
+    Scene scene = scene_as_written(table, study.base_file);
     for (const ChosenValue& chosen : values)
         apply_to_scene(scene, study.material, chosen);
+    join_layers(scene);
     return scene;
 }
 

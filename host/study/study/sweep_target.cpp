@@ -2,7 +2,8 @@
 
 #include "host/study/study/toml_path.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -75,10 +76,30 @@ void resolve_illuminant(const TableReader& reader, const Study& study, Sweep& sw
     node_at(study.base, sweep.path, sweep.index < 0 ? 1 : 2, sweep.position);
 }
 
+/// Returns the layer whose fluorophores are meant where none is named: the only one that holds some
+/// in a material whose substrate holds none; -1: the substrate.
+int layer_of_dyes(const TableReader& reader, const Study& study, const SourcePosition& at) {
+    const toml::table& material =
+        *node_at(study.base, {"material", study.material}, 2, at).as_table();
+    const toml::array* const layers = material["layer"].as_array();
+    if (layers == nullptr || material["substrate"]["reradiation"]["fluorophores"])
+        return -1;
+    std::vector<int> dyed;
+    for (std::size_t k = 0; k < layers->size(); ++k)
+        if (const toml::table* const layer = layers->get(k)->as_table();
+            layer != nullptr && layer->contains("fluorophores"))
+            dyed.push_back(static_cast<int>(k));
+    if (dyed.size() > 1)
+        reader.fail("parameter", fmt::format("layers {} hold fluorophores", fmt::join(dyed, ", ")),
+                    fmt::format("say which, layer = {}, or sweep each by itself", dyed.front()));
+    return dyed.empty() ? -1 : dyed.front();
+}
+
 void resolve_concentration(const TableReader& reader, const Study& study, Sweep& sweep) {
     sweep.kind = SweepKind::Concentration;
     sweep.index = reader.integer_or("fluorophore", -1, 0, most_index);
-    sweep.layer = reader.integer_or("layer", -1, 0, most_index);
+    sweep.layer = reader.has("layer") ? reader.integer_or("layer", 0, 0, most_index)
+                                      : layer_of_dyes(reader, study, sweep.position);
     TomlPath all{"material", study.material, "substrate", "reradiation", "fluorophores"};
     if (sweep.layer >= 0)
         all = {"material", study.material, "layer", std::to_string(sweep.layer), "fluorophores"};

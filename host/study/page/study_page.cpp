@@ -1,9 +1,9 @@
-#include "host/study/study/study_page.h"
+#include "host/study/page/study_page.h"
 
 #include "host/report/colour_map.h"
 #include "host/report/data_uri.h"
 #include "host/report/html.h"
-#include "host/study/study/contact_sheet.h"
+#include "host/study/page/contact_sheet.h"
 #include "host/study/study/study_store.h"
 
 #include <fmt/core.h>
@@ -77,13 +77,20 @@ Json image_json(const CellResult& cell, double values_each) {
             {"picture", png_data_uri(cell.folder / "image.png")}};
 }
 
+std::string encoded_matrix(const Eigen::MatrixXd& matrix) {
+    std::vector<float> entries;
+    for (const double value : matrix.reshaped())
+        entries.push_back(static_cast<float>(value));
+    return encoded(entries);
+}
+
 Json measured_json(const CellMeasurement& measurement) {
     Json json = measurement_json(measurement);
-    std::vector<float> entries;
-    for (const double value : measurement.matrix.reshaped())
-        entries.push_back(static_cast<float>(value));
-    json["matrix"] = encoded(entries);
-    json.erase("specular");
+    json["matrix"] = encoded_matrix(measurement.matrix);
+    if (measurement.of_sheet())
+        json["transmitted"] = encoded_matrix(measurement.transmitted);
+    for (const char* key : {"specular", "guided", "straight"})
+        json.erase(key);
     json["polar"] = Json::array();
     for (const PolarCurve& curve : measurement.polar)
         json["polar"].push_back(polar_svg(curve, measurement.colours.front().illuminant));

@@ -1,4 +1,4 @@
-#include "host/study/study/study_page.h"
+#include "host/study/page/study_page.h"
 
 namespace reradiant {
 
@@ -56,6 +56,7 @@ for (const cell of study.cells) {
     const m = cell.measured;
     m.grid = { from: m.bands.from_nm, step: m.bands.step_nm, count: m.bands.count };
     m.matrix = decode(m.matrix, Float32Array);
+    if (m.transmitted) m.transmitted = decode(m.transmitted, Float32Array);
   }
 }
 function radiance(image, pixel, band) {
@@ -235,16 +236,16 @@ function imagePart(panel, image) {
   return [draw, spectrum];
 }
 
-function matrixPart(panel, m) {
+function matrixPart(panel, m, entries, where) {
   const n = m.grid.count, nm = (band) => m.grid.from + band * m.grid.step;
   const canvas = make('canvas', { width: n, height: n, className: 'image' });
   const value = make('div', { className: 'value' });
   panel.append(make('div', { className: 'caption',
-    textContent: 'Re-radiation, hemispherical, per band, square root: excitation across, emission upwards' }),
+    textContent: 'Re-radiation' + where + ', hemispherical, per band, square root: excitation across, emission upwards' }),
     canvas, value);
-  const entry = (o, i) => m.matrix[i * n + o]; // column after column
-  const top = Math.max(1e-30, ...Array.from(m.matrix));
-  const emission = chart(panel, 'Emission at the excitation', 'nm', () => {
+  const entry = (o, i) => entries[i * n + o]; // column after column
+  const top = Math.max(1e-30, ...Array.from(entries));
+  const emission = chart(panel, 'Emission at the excitation' + where, 'nm', () => {
     const i = bandAt(m.grid, state.excitation);
     return [{ label: 'excited at ' + nm(i) + ' nm:', from: m.grid.from, step: m.grid.step,
       values: Array.from({ length: n }, (_, o) => o === i ? null : entry(o, i)) }];
@@ -277,10 +278,12 @@ function matrixPart(panel, m) {
 
 function colourTable(panel, colours_) {
   const table = make('table', {}, make('tr', {},
-    ...['light', 'in/out/phi, deg', 'X', 'Y', 'Z', 'L*', 'a*', 'b*', 'photons out / absorbed'].map((t) => make('th', { textContent: t }))));
+    ...['light', 'in/out/phi, deg', 'X', 'Y', 'Z', 'L*', 'a*', 'b*', 'photons out / absorbed',
+      'Y of all reflected', 'transmitted', 'guided'].map((t) => make('th', { textContent: t }))));
   for (const c of colours_)
     table.append(make('tr', {}, ...[c.illuminant, c.theta_i_deg + '/' + c.theta_o_deg + '/' + c.phi_deg,
-      ...c.XYZ.map(number), ...c.Lab.map(number), number(c.quantum_yield)].map((t) => make('td', { textContent: t }))));
+      ...c.XYZ.map(number), ...c.Lab.map(number), ...[c.quantum_yield, c.reflected, c.transmitted, c.guided]
+        .map(number)].map((t) => make('td', { textContent: t }))));
   panel.append(table);
 }
 function measuredPart(panel, m) {
@@ -288,7 +291,8 @@ function measuredPart(panel, m) {
   const total = chart(panel, 'Total radiance factor', 'nm', () => m.colours.map((c) => ({
     label: c.illuminant + ' ' + c.theta_i_deg + '/' + c.theta_o_deg, from: m.grid.from,
     step: m.grid.step, values: c.beta_T })));
-  const draws = [total, ...matrixPart(panel, m)];
+  const draws = [total, ...matrixPart(panel, m, m.matrix, m.transmitted ? ', sent back' : '')];
+  if (m.transmitted) draws.push(...matrixPart(panel, m, m.transmitted, ', sent through'));
   for (const svg of m.polar) { const box = make('div', {}); box.innerHTML = svg; panel.append(box); }
   return draws;
 }

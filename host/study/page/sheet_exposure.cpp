@@ -1,4 +1,4 @@
-#include "host/study/study/sheet_exposure.h"
+#include "host/study/page/sheet_exposure.h"
 
 #include "host/film/colour_image.h"
 #include "reradiant/spectral_image.h"

@@ -1,4 +1,4 @@
-#include "host/study/study/contact_sheet.h"
+#include "host/study/page/contact_sheet.h"
 
 #include "host/film/display_picture.h"
 #include "host/film/png.h"
