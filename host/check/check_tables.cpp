@@ -157,8 +157,8 @@ CheckTables check_tables() {
     const auto stack = layers();
     std::copy(stack.begin(), stack.end(), tables.layers);
     tables.lobes[0] = {0.3f, 1, CHECK_LAYERS - 1, NO_INDEX, NO_INDEX, NO_INDEX, 0.0f};
-    tables.lobes[1] = {0.6f,     0,        1,   0,
-                       NO_INDEX, NO_INDEX, 0.0f}; // a slab of anisotropy 0.6 beneath the coat
+    // a slab of anisotropy 0.6 beneath the coat
+    tables.lobes[1] = {0.6f, 0, 1, 0, NO_INDEX, NO_INDEX, 0.0f};
     fill_textures(tables);
     fill_lights(tables);
     fill_camera(tables.camera);
