@@ -4,6 +4,7 @@
 #include "host/layers/smooth/smooth_stack.h"
 #include "host/layers/walk/walk_surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -18,7 +19,8 @@ namespace {
 /// the last. The lobe's light reaches `first` or deeper.
 struct Interfaces {
     std::vector<SurfaceValues> above, below;
-    std::size_t first = 0; ///< among `below`
+    std::size_t first = 0;  ///< among `below`
+    bool is_filmed = false; ///< the last one bears a film
 
     Interfaces(std::span<const StackElement> stack, std::size_t first_element,
                std::size_t last_element) {
@@ -43,7 +45,8 @@ struct Interfaces {
     }
 
     std::vector<double> key() const {
-        std::vector<double> key{1.0, static_cast<double>(first)}; // a lobe that comes back
+        // a lobe that comes back
+        std::vector<double> key{1.0, static_cast<double>(first), is_filmed ? 1.0 : 0.0};
         for (const auto* surfaces : {&above, &below}) {
             key.push_back(static_cast<double>(surfaces->size()));
             for (const SurfaceValues& surface : *surfaces)
@@ -75,7 +78,8 @@ class ReturnWalk {
 public:
     explicit ReturnWalk(const Interfaces& interfaces)
         : pile_(interfaces.pile()), ior_(pile_.ior.back()),
-          ior_below_(interfaces.below.front().ior_below), first_(interfaces.first) {
+          ior_below_(interfaces.below.front().ior_below), first_(interfaces.first),
+          is_filmed_(interfaces.is_filmed) {
         for (const SurfaceValues& surface : interfaces.below)
             surfaces_.push_back(walk_surface(surface));
     }
@@ -136,18 +140,24 @@ private:
     SurfaceEvent meet(const State& at, std::span<SurfaceTarget> targets, WalkRandom& random) const {
         const WalkSurface& surface = surfaces_[at.surface];
         if (!at.from_below && at.surface + 1 == surfaces_.size())
-            return sent_up(surface, at.v, targets, random);
+            return surface.is_rough() ? sent_up(surface, at.v, targets, random)
+                                      : mirrored(surface, at.v);
         return surface.is_rough()
                    ? meet_rough_surface(surface, at.from_below, at.v, targets, random)
                    : meet_smooth_surface(surface, at.from_below, at.v, random);
     }
 
-    /// What an interface reflects, without luck: one of many events that reflect, drawn by its
+    /// What a smooth interface reflects. The interference of a film changes with the wavelength,
+    /// and stands in the lobe's amplitude alone.
+    SurfaceEvent mirrored(const WalkSurface& surface, const Vec3& v) const {
+        return {true, kernels::vec3(-v.x, -v.y, v.z),
+                is_filmed_ ? 1.0 : surface.reflectance(false, v.z)};
+    }
+
+    /// What a rough interface reflects, without luck: one of many events that reflect, drawn by its
     /// weight.
     static SurfaceEvent sent_up(const WalkSurface& surface, const Vec3& v,
                                 std::span<SurfaceTarget> targets, WalkRandom& random) {
-        if (!surface.is_rough())
-            return {true, kernels::vec3(-v.x, -v.y, v.z), surface.reflectance(false, v.z)};
         constexpr int tries = 8;
         SurfaceEvent drawn;
         for (int k = 0; k < tries; ++k) {
@@ -214,13 +224,31 @@ private:
     SmoothStack pile_;
     double ior_, ior_below_; ///< of the media above and beneath the uppermost rough interface
     std::size_t first_;
+    bool is_filmed_;
     std::vector<WalkSurface> surfaces_; ///< from that one on
 };
+
+/// A smooth interface takes the distribution of the rough one above it.
+Distribution distribution_at(std::span<const StackElement> stack, std::size_t interface) {
+    for (std::size_t e = interface; e > 0; --e)
+        if (const auto* surface = std::get_if<SurfaceValues>(&stack[e]);
+            surface && surface->alpha != 0.0)
+            return surface->distribution;
+    return std::get<SurfaceValues>(stack.front()).distribution;
+}
+
+bool is_of_cavities(const StackElement& element) {
+    const auto* surface = std::get_if<SurfaceValues>(&element);
+    return surface && surface->scatters() && surface->distribution == Distribution::Blinn;
+}
 
 } // namespace
 
 LobeShape returned_lobe(std::span<const StackElement> stack, std::size_t first, std::size_t last) {
     LobeShape lobe = deeper_lobe(stack, first);
+    lobe.distribution = distribution_at(stack, first);
+    if (lobe.alpha == 0.0 && std::ranges::any_of(stack.first(last + 1), is_of_cavities))
+        return lobe;
     lobe.distribution = Distribution::Ggx; // its tails are long enough for all
     StackElements nearby(stack.begin(), stack.begin() + static_cast<std::ptrdiff_t>(last) + 1);
     for (StackElement& element : nearby)
@@ -229,7 +257,8 @@ LobeShape returned_lobe(std::span<const StackElement> stack, std::size_t first, 
     LobeShape plain = deeper_lobe(nearby, first);
     plain.distribution = lobe.distribution;
     smooth_faint(nearby, first);
-    const Interfaces interfaces(nearby, first, last);
+    Interfaces interfaces(nearby, first, last);
+    interfaces.is_filmed = std::get<SurfaceValues>(stack[last]).has_film();
     const ReturnWalk walk(interfaces);
     const auto aimed = [&](const Vec3& own, std::span<const Vec3> others) -> LobeWalk {
         return [&walk, own, targets = walk.targets(others)](WalkRandom& random,

@@ -13,6 +13,9 @@ namespace reradiant {
 /// a tabulated ratio. `first` lies beneath a rough interface or is rough itself; from it on all up
 /// to `last` are smooth. Thread-safe.
 ///
+/// What Blinn's cavities give back of the light that they lose is met by few walks. Where the lobe
+/// is spread by cavities alone, above smooth interfaces, it has their distribution and no table.
+///
 /// Ratios (host/layers/models/lobe_ratios.h) are made by walks, without absorption, down to `last`
 /// and back through the uppermost rough interface, which is connected to all directions whenever
 /// light meets it; the lobe is the sum of those for both orders of its directions. Who uses it

@@ -206,6 +206,7 @@ private:
         plan_.counts.lobes = static_cast<std::uint64_t>(plan_.features.lobes);
         plan_.features.deeper_lobes = plan_.counts.lobes > 0;
         if (plan_.choice.model == Model::Adding) {
+            // no more than that: some lobes have no table
             const std::uint64_t facets = has_facet_lobe_on_a_side() ? 1 : 0;
             plan_.counts.floats +=
                 facets * SHAPE_TABLE_SIZE + (plan_.counts.lobes - facets) * LOBE_RATIO_SIZE;
