@@ -58,7 +58,7 @@ float rr_ratio(float alpha, vec3 wi, vec3 wo) {
 
 #if RR_OPERATORS == 2
 float rr_oren_nayar_place(float cosine) { return sqrt(max(1.0 - cosine, 0.0)) * 15.0; }
-float rr_separable(float cosine) {
+float rr_separable_albedo(float cosine) {
     float place = clamp(rr_oren_nayar_place(cosine), 0.0, 15.0);
     int node = min(int(place), 14);
     return mix(RR_SEPARABLE(node), RR_SEPARABLE(node + 1), place - float(node));
@@ -101,7 +101,7 @@ RrGeometry rr_geometry(vec3 wi, vec3 wo, float sin_radius) {
     g.first = rr_oren_nayar(rr_sigma, wi, wo);
     g.rest = 0.0;
 #if RR_OPERATORS == 2
-    float mean = rr_mean_albedo, both = rr_separable(wi.z) * rr_separable(wo.z);
+    float mean = rr_mean_albedo, both = rr_separable_albedo(wi.z) * rr_separable_albedo(wo.z);
     g.first = rr_seen_substrate(wi, wo) - both / mean;
     g.rest = both / (mean * mean);
 #endif

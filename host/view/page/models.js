@@ -72,15 +72,18 @@ function applied(operator, light) {
   return sent;
 }
 
+// A share whose logarithm is tabulated; none at all counts as 1e-12 there.
+const share = (logarithm) => logarithm < -27 ? 0 : Math.exp(logarithm);
+
 function addingState(material, sliders) {
   const grid = material.adding, numbers = bandNumbers(grid, sliders), last = material.layers.at(-1);
   const place = linear(grid.alphas, grid.alphas.length > 1 ? sliders.alpha : grid.alphas[0]);
-  const shape = grid.shapes[place.high], top = material.layers[0], r = numbers.map((one) => one[0]);
+  const shape = grid.shapes[place.high], top = material.layers[0], r = numbers.map((one) => share(one[0]));
   const sigma = grid.orenNayar ? material.substrate.sigma : 0, mean = meanOrenNayar(sigma);
   const ior = numbers.map((_, b) => last ? last.ior[b] : 1);
   const alpha = grid.alphas.length > 1 ? sliders.alpha : grid.alphas[0];
   const state = { model: 'adding', sigma: material.substrate.sigma, mean, lowestIor: ior[ior.length >> 1],
-    transmission: numbers.map((one) => table(one, 0).map((v) => v < -27 ? 0 : Math.exp(v))),
+    transmission: numbers.map((one) => table(one, 0).map(share)),
     delta: numbers.map((one) => table(one, 1)), residual: numbers.map((one) => residualTable(one, 2)),
     albedo: numbers.map((one) => table(one, 3)), r, scale: ior.map((n) => 1 / (Math.PI * n * n)), ior: ior,
     topIor: numbers.map((_, b) => top ? top.ior[b] : 1), topDistribution: top ? top.distribution : 2,

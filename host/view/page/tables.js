@@ -90,13 +90,13 @@ function bandNumbers(grid, sliders) {
 
 const table = (numbers, index) => numbers.subarray(2 + index * NODES, 2 + (index + 1) * NODES);
 const scaledTable = (values, factor) => values.map((value) => value * factor);
-// Catmull-Rom between the nodes, as the renderer looks its tables up.
+// Catmull-Rom between the nodes, as `measure` looks its tables up.
 function lookUp(values, cosine) {
   const x = Math.sqrt(clamp(cosine, 0, 1)) * (NODES - 1), i = Math.min(Math.floor(x), NODES - 2), t = x - i;
   const low = i > 0 ? 0.5 * (values[i + 1] - values[i - 1]) : values[1] - values[0];
   const high = i + 2 < NODES ? 0.5 * (values[i + 2] - values[i]) : values[i + 1] - values[i];
   const rise = values[i + 1] - values[i];
-  return Math.max(0, values[i] + t * (low + t * (3 * rise - 2 * low - high + t * (low + high - 2 * rise))));
+  return values[i] + t * (low + t * (3 * rise - 2 * low - high + t * (low + high - 2 * rise)));
 }
 // The residual over sqrt(pi times its mean): the product of two is its value.
 function residualTable(numbers, index) {

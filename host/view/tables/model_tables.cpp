@@ -16,8 +16,9 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// The logarithm of no light at all.
-constexpr double least_transmission = 1e-12;
+/// Shares fall exponentially with the depth: their logarithms are interpolated, of no light at all
+/// that of this.
+constexpr double least_share = 1e-12;
 
 Json grid_json(const VariantGrid& grid) {
     return {{"alphas", grid.alphas},  {"ownAlpha", grid.own_alpha},   {"classOf", grid.class_of},
@@ -45,19 +46,20 @@ Json lobe_json(const LobeShape& lobe) {
 }
 
 struct AddingVariant {
-    std::vector<double> numbers; ///< internal reflectance, mean of the residual, then the tables
+    std::vector<double> numbers; ///< logarithm of the internal reflectance, mean
+                                 ///< of the residual, then the tables
     std::vector<LobeShape> lobes;
     bool has_top = false;
 };
 
 AddingVariant adding_variant(const StackElements& stack, double sigma) {
     const std::shared_ptr<const StackBsdf> model = closed_model(Model::Adding)(stack);
-    AddingVariant variant{{model->internal_reflectance(sigma), model->residual_average()},
+    AddingVariant variant{{std::log(std::max(model->internal_reflectance(sigma), least_share)),
+                           model->residual_average()},
                           model->deeper_lobes(),
                           model->has_top_lobe()};
-    append_table(variant.numbers, [&](double c) {
-        return std::log(std::max(model->transmission(c), least_transmission));
-    });
+    append_table(variant.numbers,
+                 [&](double c) { return std::log(std::max(model->transmission(c), least_share)); });
     append_table(variant.numbers, [&](double c) { return model->specular_delta(c); });
     append_table(variant.numbers, [&](double c) { return model->residual(c); });
     append_table(variant.numbers, [&](double c) { return model->specular_albedo(c); });

@@ -13,8 +13,9 @@ namespace {
 constexpr double slider_alphas[] = {0.0, 0.05, 0.1, 0.2, 0.35, 0.6};
 /// Depths over the largest of the material: sliders multiply thickness and absorption by up to 4
 /// each. One factor on all depths is tabulated at fewer places, as every band is a class.
-constexpr double slab_depths[] = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0};
-constexpr double factor_depths[] = {0.0, 0.25, 0.5, 1.0, 2.0, 4.0};
+constexpr double slab_depths[] = {0.0, 0.0625, 0.125, 0.25, 0.375, 0.5, 0.75, 1.0,
+                                  1.5, 2.0,    3.0,   4.0,  6.0,   8.0, 12.0, 16.0};
+constexpr double factor_depths[] = {0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0};
 /// More variants than this would make the page large and its making slow.
 constexpr std::size_t most_variants = 600;
 
@@ -88,7 +89,10 @@ VariantGrid chosen_depths(const std::vector<StackElements>& stacks,
     if (absorbing.empty())
         return fixed;
     VariantGrid moving = moving_depths(stacks, absorbing, with_sliders);
-    return with_sliders || moving.variants() < fixed.variants() ? moving : fixed;
+    const auto stacks_of = [](const VariantGrid& grid) {
+        return grid.bases.size() * grid.nodes.size();
+    };
+    return with_sliders || stacks_of(moving) < stacks_of(fixed) ? moving : fixed;
 }
 
 /// Widths of the first surface. One that bears a film keeps its own.
@@ -133,17 +137,19 @@ VariantGrid variant_grid(const Material& material, const WavelengthGrid& bands,
     const std::vector<std::size_t> absorbing = absorbing_slabs(stacks);
     // where clouds scatter, depth is more than absorption: such a stack stays as thick as it is
     const bool may_move = request.with_sliders && !material.stack.scatters();
+    struct Moves {
+        bool depth, alpha;
+    };
     VariantGrid grid;
-    for (const bool depth_moves : {true, false})
-        for (const bool alpha_moves : {true, false}) {
-            if ((depth_moves && !may_move) || (alpha_moves && !request.with_sliders))
-                continue;
-            grid = material.stack.scatters() ? fixed_depths(stacks, !absorbing.empty())
-                                             : chosen_depths(stacks, absorbing, depth_moves);
-            choose_alphas(grid, alpha_moves);
-            if (grid.variants() <= most_variants && (alpha_moves || depth_moves))
-                return grid;
-        }
+    for (const auto [depth, alpha] : {Moves{true, true}, {false, true}, {false, false}}) {
+        if ((depth && !may_move) || (alpha && !request.with_sliders))
+            continue;
+        grid = material.stack.scatters() ? fixed_depths(stacks, !absorbing.empty())
+                                         : chosen_depths(stacks, absorbing, depth);
+        choose_alphas(grid, alpha);
+        if (grid.variants() <= most_variants)
+            break;
+    }
     return grid;
 }
 
