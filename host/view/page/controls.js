@@ -38,7 +38,8 @@ function materialSliders() {
     rows.push(slid('thickness', 'Thickness', [0, 4, 0.05], 1, set('thickness'), times),
       slid('absorption', 'Absorption', [0, 4, 0.05], 1, set('absorption'), times));
   if (hasDye(material)) rows.push(slid('dye', 'Dye (re-radiation)', [0, 1, 0.01], 1, set('dye'), (v) => Math.round(100 * v) + ' %'));
-  if (rows.length === 0) rows.push(make('p', { className: 'caption', textContent: 'Nothing of this material slides here.' }));
+  if (rows.length === 0) rows.push(make('p', { className: 'caption', textContent: viewData.gallery
+      ? 'Pages of one material (view --preset ' + material.name + ') have sliders.' : 'Nothing of this material slides here.' }));
   return rows;
 }
 function modelNames(material) {
@@ -49,7 +50,7 @@ function buildMaterialControls() {
   const material = materialNow();
   place('material-controls').replaceChildren(
     ...materials.length > 1 ? [picked('material', 'Material', materials.map((one, k) => [String(k), one.name]), String(view.material), chooseMaterial)] : [],
-    picked('model', 'Model', modelNames(material), view.model, (value) => { view.model = value; showDivider(); changed(); }),
+    picked('model', 'Model', modelNames(material), view.model, (value) => { view.model = view.asked = value; showDivider(); changed(); }),
     make('div', { id: 'divider-row' }, slid('divider', 'Divider', [0, 1, 0.01], view.divider, (value) => { view.divider = value; redraw(); }, (v) => Math.round(100 * v) + ' %')),
     ...materialSliders(),
     make('div', { className: 'buttons' },
@@ -103,7 +104,7 @@ function chooseShape(shape) {
 function chooseMaterial(index) {
   view.material = Number(index);
   const { models } = materialNow();
-  view.model = models.includes(view.model) || view.model === 'both' && models.length > 1 ? view.model : models[0];
+  view.model = models.includes(view.asked) || view.asked === 'both' && models.length > 1 ? view.asked : models[0];
   resetSliders();
   buildMaterialControls();
   for (const button of document.querySelectorAll('#gallery button'))

@@ -38,6 +38,7 @@ function drawNow() {
 
 const three = (values, digits) => values.map((value) => value.toFixed(digits)).join(', ');
 function showReading() {
+  refresh();
   const found = readingAt(states[modelAt(view.x)], view.x, view.y), { bands, name } = materialNow();
   place('cross').style.left = 100 * view.x / SIZE + '%';
   place('cross').style.top = 100 * view.y / SIZE + '%';

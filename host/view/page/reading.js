@@ -3,7 +3,7 @@ const viewData = JSON.parse(document.getElementById('view-data').textContent);
 const materials = viewData.materials, shaderParts = viewData.shaders;
 const lamps = viewData.lamps.map((lamp) => ({ name: lamp.name, values: decode(lamp.values, Float32Array) }));
 const SIZE = 512; // pixels of the picture's side
-const view = { material: 0, model: '', lamp: 0, shape: 'sphere', lampAcross: -35, lampUp: 35, lampRadius: 4, turnAcross: 0, turnUp: 0,
+const view = { material: 0, model: '', asked: '', lamp: 0, shape: 'sphere', lampAcross: -35, lampUp: 35, lampRadius: 4, turnAcross: 0, turnUp: 0,
   drag: 'lamp', uv: 1, around: 0.15, exposure: 0, divider: 0.5, x: 240.5, y: 260.5, sliders: {} };
 let mesh = null;
 

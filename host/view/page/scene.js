@@ -10,7 +10,7 @@ const lampDirection = (view) => {
 };
 // Columns of the object's frame in the world.
 function objectTurn(view) {
-  const a = radians(view.turnAcross), b = radians(view.turnUp + (FLAT_TILTS[view.shape] || 0));
+  const a = radians(view.turnAcross), b = radians(view.turnUp - (FLAT_TILTS[view.shape] || 0));
   const [ca, sa, cb, sb] = [Math.cos(a), Math.sin(a), Math.cos(b), Math.sin(b)];
   return [[ca, sa * sb, -sa * cb], [0, cb, sb], [sa, -ca * sb, ca * cb]];
 }
