@@ -3,6 +3,8 @@
 #include "host/layers/models/effective_matrix.h"
 #include "host/layers/models/stack_bsdf.h"
 #include "host/layers/rough/facet_reflectance.h"
+#include "host/layers/rough/specular_lobes.h"
+#include "host/layers/stack/quadrature.h"
 #include "host/measure/measure_substrate.h"
 #include "host/scene/model/closed_model.h"
 #include "reradiant/measure.h"
@@ -13,6 +15,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace reradiant {
 
@@ -90,7 +93,15 @@ private:
 
 void GlslTablesMaker::add_adding() {
     const StackBsdf& middle = *models_[bands() / 2];
+    // the light of several facets, whose shape is a table of thousands of numbers, joins the
+    // residual
     std::vector<LobeShape> lobes = middle.deeper_lobes();
+    const std::size_t first = !lobes.empty() && lobes.front().table ? 1 : 0;
+    const CosineTable shared = first == 1 ? lobe_albedo(lobes.front()) : CosineTable();
+    lobes.erase(lobes.begin(), lobes.begin() + static_cast<std::ptrdiff_t>(first));
+    if (first == 1)
+        out_.left_out.push_back("The direction of light that met several facets of the first "
+                                "interface; its amount is there.");
     std::size_t passages = 1;
     for (const LobeShape& lobe : lobes)
         passages = std::max(passages, lobe.passages.size());
@@ -98,15 +109,25 @@ void GlslTablesMaker::add_adding() {
     define("RR_PASSAGES", static_cast<int>(passages));
     define("RR_HAS_RATIO", 0);
     define("RR_SPREADS", 0);
-    if (!lobes.empty() && lobes.front().table)
-        out_.left_out.push_back("Light of several facets has the shape of the light of one.");
     if (material_.substrate.type == SubstrateType::OrenNayar && !material_.stack.layers.empty())
         out_.left_out.push_back("The substrate beneath the layers is Lambertian instead of Oren "
                                 "and Nayar's.");
     add_table([&](std::size_t b, double c) { return models_[b]->transmission(c); });
     add_table([&](std::size_t b, double c) { return models_[b]->specular_delta(c); });
-    add_table([&](std::size_t b, double c) { return models_[b]->residual_amplitude(c); });
-    for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe)
+    const auto residual = [&](std::size_t b, double c) {
+        const double several = first == 1 && !models_[b]->deeper_lobes().empty()
+                                   ? std::pow(models_[b]->lobe_amplitude(0, c), 2) * shared(c)
+                                   : 0.0;
+        return models_[b]->residual(c) + several;
+    };
+    std::vector<double> means;
+    for (std::size_t b = 0; b < bands(); ++b)
+        means.push_back(
+            integrate_sin2(0.0, 1.0, 32, [&](double c) { return 2.0 * c * residual(b, c); }));
+    add_table([&](std::size_t b, double c) {
+        return means[b] > 0.0 ? residual(b, c) / std::sqrt(std::numbers::pi * means[b]) : 0.0;
+    });
+    for (std::size_t lobe = first; lobe < lobes.size() + first; ++lobe)
         add_table([&](std::size_t b, double c) {
             return lobe < models_[b]->deeper_lobes().size()
                        ? models_[b]->lobe_amplitude(static_cast<int>(lobe), c)
