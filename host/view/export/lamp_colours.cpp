@@ -98,6 +98,8 @@ void say_what_is_left_out(LampColours& colours, const Material& material) {
     auto& out = colours.left_out;
     out.push_back("The colours are those under this lamp alone, seen by the observer of 1931 and "
                   "adapted to its white; another lamp needs another file.");
+    out.push_back("Colours of layers and substrate multiply as three numbers, where spectra would "
+                  "multiply band by band.");
     if (material.is_fluorescent())
         out.push_back("Re-radiation is in the colours, so that colours may exceed 1: it does not "
                       "follow the light that really falls on the surface.");
