@@ -26,8 +26,9 @@ public:
     /// Opens `html` from a file in the folder, runs `steps` (the body of an asynchronous function,
     /// which fills `outcome`) when it is loaded, and returns the outcome with what every page must
     /// say of itself: `faults`, resources `fetched` from elsewhere, `pictures`, those `broken`.
+    /// With `is_timed` the page's clock is the real one; else timers run as soon as they can.
     nlohmann::json opened(const std::filesystem::path& folder, std::string html,
-                          const std::string& steps) const {
+                          const std::string& steps, bool is_timed = false) const {
         html.insert(html.find("<head>") + 6, watch);
         html.insert(html.rfind("</body>"), "<script>addEventListener('load', async () => { const "
                                            "outcome = {};\ntry {\n" +
@@ -36,8 +37,8 @@ public:
         const std::string command =
             name_ +
             " --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
-            "--enable-unsafe-swiftshader --window-size=1200,900 --virtual-time-budget=20000 "
-            "--dump-dom 'file://" +
+            "--enable-unsafe-swiftshader --window-size=1200,900 " +
+            (is_timed ? "" : "--virtual-time-budget=20000 ") + "--dump-dom 'file://" +
             (folder / "opened.html").string() + "' 2>/dev/null >'" +
             (folder / "dom.html").string() + "'";
         EXPECT_EQ(std::system(command.c_str()), 0) << command;

@@ -25,8 +25,9 @@ protected:
             GTEST_SKIP() << PageBrowser::missing;
     }
 
-    nlohmann::json opened(const std::string& html, const std::string& steps) const {
-        nlohmann::json outcome = browser.opened(folder / "", html, steps);
+    nlohmann::json opened(const std::string& html, const std::string& steps,
+                          bool is_timed = false) const {
+        nlohmann::json outcome = browser.opened(folder / "", html, steps, is_timed);
         EXPECT_EQ(outcome.value("faults", nlohmann::json()), nlohmann::json::array());
         EXPECT_EQ(outcome.value("fetched", nlohmann::json()), nlohmann::json::array())
             << "pages need no network";

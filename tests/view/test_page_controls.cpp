@@ -267,6 +267,35 @@ TEST_F(PageControls, PageSaysWhereWebglIsMissing) {
     EXPECT_NE(outcome.at("reading").get<std::string>().find("X, Y, Z"), std::string::npos);
 }
 
+// The goal is half a second by software on two cores; a machine that is busy beside gets a factor.
+TEST_F(PageControls, FrameIsDrawnInTimeBySoftware) {
+    for (const char* preset : {"neon-orange-varnished", "fluorescent-orange-rough", "car-paint"}) {
+        const nlohmann::json outcome = opened(page_of(viewed_preset(preset)), R"js(
+  outcome.seconds = {};
+  for (const model of materialNow().models) {
+    view.model = model;
+    isStale = true;
+    drawNow();
+    const pixel = new Uint8Array(4), times = [];
+    for (let k = 0; k < 5; ++k) {
+      const from = performance.now();
+      view.lampAcross += 3;
+      drawNow();
+      gl.readPixels(256, 256, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      times.push((performance.now() - from) / 1000);
+    }
+    outcome.seconds[model] = times.sort((a, b) => a - b)[2];
+  }
+)js",
+                                              true);
+        for (const auto& [model, seconds] : outcome.at("seconds").items()) {
+            fmt::print("{} {}: {:.3f} s a frame\n", preset, model, seconds.get<double>());
+            EXPECT_LT(seconds.get<double>(), 5.0);
+            EXPECT_GT(seconds.get<double>(), 0.0);
+        }
+    }
+}
+
 // Nothing is wider than a phone.
 TEST_F(PageControls, PageFitsAPhone) {
     const nlohmann::json outcome = opened(page_of(viewed_preset("fluorescent-orange-rough")), R"js(

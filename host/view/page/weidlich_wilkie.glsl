@@ -6,15 +6,16 @@ struct RrGeometry {
     float cos_i, cos_o;
     float meets_i[RR_LAYERS + 1], meets_o[RR_LAYERS + 1], facets[RR_LAYERS + 1]; // at each interface
     float cos_h[RR_LAYERS + 1], lobe[RR_LAYERS + 1];
+    vec3 fresnel[RR_LAYERS + 1]; // at the half vector and on both ways, where no table says it
     float slab_i[RR_LAYERS + 1], slab_o[RR_LAYERS + 1], phase[RR_LAYERS + 1]; // beneath it
     float flake_h[RR_LAYERS + 1], flakes[RR_LAYERS + 1];
     float shape, passes;
 };
 
-// The table of a part's reflectance where it is not Fresnel's of a plain interface; -1 else.
-vec4 rr_reflectance(int layer, int chunk, float cosine, vec4 eta) {
+// Reflectance of an interface: of a table where it is not Fresnel's of a plain one.
+vec4 rr_reflectance(int layer, int chunk, float cosine, float fresnel) {
     int table = rr_layer_table[layer];
-    return table < 0 ? rr_fresnel4(cosine, eta) : rr_table(table, chunk, cosine);
+    return table < 0 ? vec4(fresnel) : rr_table(table, chunk, cosine);
 }
 
 float rr_phase(float g, float deflection) {
@@ -43,6 +44,9 @@ RrGeometry rr_geometry_at(vec3 wi, vec3 wo, float sin_radius, float ior[RR_LAYER
         g.facets[k] = is_rough ? rr_shadowing(rr_layer_distribution[k], alpha, wi, wo, h) * wi.z * wo.z : 1.0;
         g.cos_h[k] = dot(lit, lit_h);
         g.lobe[k] = rr_lit_lobe(rr_layer_distribution[k], alpha, lit, wo, sin_radius);
+        g.fresnel[k].y = rr_fresnel(g.meets_i[k], eta);
+        g.fresnel[k].x = g.cos_h[k] == g.meets_i[k] ? g.fresnel[k].y : rr_fresnel(g.cos_h[k], eta);
+        g.fresnel[k].z = is_rough ? g.fresnel[k].y : rr_fresnel(g.meets_o[k], eta);
         wi = rr_refracted(wi, eta);
         wo = rr_refracted(wo, eta);
         lit = rr_refracted(lit, eta);
@@ -73,27 +77,29 @@ vec4 rr_through_slab(vec4 depth, float cosine) { return exp(-depth / max(cosine,
 
 // Radiance over irradiance at normal incidence `light`, bands of a chunk.
 vec4 rr_chunk(RrGeometry g, int chunk, vec4 light, inout RrSums first, inout RrSums rest) {
-    vec4 lit = light * g.cos_i, above = vec4(1.0), in_ = vec4(1.0), out_ = vec4(1.0);
+    vec4 lit = light * g.cos_i, in_ = vec4(1.0), out_ = vec4(1.0);
     vec4 mirrored = rr_table(RR_RESIDUAL, chunk, g.cos_i) * rr_table(RR_RESIDUAL, chunk, g.cos_o);
     for (int k = 0; k < RR_LAYERS; ++k) {
-        vec4 ior = RR_BAND(RR_IOR_ROW + k, chunk), eta = ior / above;
-        vec4 depth = RR_BAND(RR_DEPTH_ROW + 2 * k, chunk), clouds = RR_BAND(RR_DEPTH_ROW + 2 * k + 1, chunk);
+        vec4 depth = RR_BAND(RR_DEPTH_ROW + 2 * k, chunk);
         if (g.lobe[k] > 0.0)
-            mirrored += in_ * out_ * g.lobe[k] * rr_reflectance(k, chunk, g.cos_h[k], eta);
-        in_ *= 1.0 - rr_reflectance(k, chunk, g.meets_i[k], eta);
-        out_ *= 1.0 - g.facets[k] * rr_reflectance(k, chunk, g.meets_o[k], eta);
-        vec4 both = depth * (1.0 / max(g.slab_i[k], 1e-6) + 1.0 / max(g.slab_o[k], 1e-6));
-        if (rr_layer_is_cloudy[k])
-            mirrored += in_ * out_ * g.phase[k] / (g.slab_i[k] + g.slab_o[k]) * clouds * (1.0 - exp(-both));
-        in_ *= rr_through_slab(depth, g.slab_i[k]);
-        out_ *= rr_through_slab(depth, g.slab_o[k]);
+            mirrored += in_ * out_ * g.lobe[k] * rr_reflectance(k, chunk, g.cos_h[k], g.fresnel[k].x);
+        in_ *= 1.0 - rr_reflectance(k, chunk, g.meets_i[k], g.fresnel[k].y);
+        out_ *= 1.0 - g.facets[k] * rr_reflectance(k, chunk, g.meets_o[k], g.fresnel[k].z);
+        if (rr_layer_is_cloudy[k]) {
+            vec4 both = depth * (1.0 / max(g.slab_i[k], 1e-6) + 1.0 / max(g.slab_o[k], 1e-6));
+            mirrored += in_ * out_ * g.phase[k] / (g.slab_i[k] + g.slab_o[k]) *
+                        RR_BAND(RR_DEPTH_ROW + 2 * k + 1, chunk) * (1.0 - exp(-both));
+        }
+        if (any(greaterThan(depth, vec4(0.0)))) {
+            in_ *= rr_through_slab(depth, g.slab_i[k]);
+            out_ *= rr_through_slab(depth, g.slab_o[k]);
+        }
         float coverage = rr_flake_coverage[k];
         if (coverage > 0.0) {
             mirrored += in_ * out_ * coverage * g.flakes[k] * rr_table(rr_flake_table[k], chunk, g.flake_h[k]);
             in_ *= 1.0 - coverage;
             out_ *= 1.0 - coverage;
         }
-        above = ior;
     }
     in_ *= g.passes;
     if (rr_base_table >= 0) {
@@ -116,7 +122,8 @@ vec4 rr_mirror(int chunk, float cosine) {
     float c = cosine;
     for (int k = 0; k < RR_LAYERS; ++k) {
         vec4 ior = RR_BAND(RR_IOR_ROW + k, chunk), eta = ior / above;
-        vec4 reflected = rr_reflectance(k, chunk, c, eta);
+        int table = rr_layer_table[k];
+        vec4 reflected = table < 0 ? rr_fresnel4(c, eta) : rr_table(table, chunk, c);
         if (rr_layer_alpha[k] == 0.0) sum += through * reflected;
         through *= (1.0 - reflected) * (1.0 - reflected);
         c = rr_refracted(vec3(sqrt(1.0 - c * c), 0.0, c), eta.x).z;
