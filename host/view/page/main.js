@@ -45,11 +45,12 @@ function showReading() {
   const spectrum = (label, values) => ({ label, from: bands.from, step: bands.step, values: Array.from(values) });
   const lamp = [spectrum(lamps[view.lamp].name, lampNow())];
   drawChart(place('lamp-chart'), lamp, null);
-  place('lamp-value').textContent = lamps[view.lamp].name + ', irradiance per nm, Y = 1';
+  place('lamp-value').textContent = lamps[view.lamp].name + ', irradiance per nm' + (isFaintLamp() ? '' : ', Y = 1');
   drawChart(place('chart'), found ? [spectrum('radiance', found.radiance)] : [], null);
   const rows = !found ? [['', 'beside the object']] : [
     ['Directions', 'lamp ' + found.thetaI.toFixed(1) + '°, eye ' + found.thetaO.toFixed(1) + '° from the normal'],
-    ['X, Y, Z', found.xyz ? three(found.xyz, 2) : 'the lamp does not reach here'],
+    ['X, Y, Z', found.xyz ? three(found.xyz, 2)
+      : found.wi[2] > 0 ? 'the eye hardly sees this lamp: no white to compare with' : 'the lamp does not reach here'],
     ['L*, a*, b*', found.lab ? three(found.lab, 2) : '-'],
     ['Shown as sRGB', three(found.rgb.map((value) => 255 * value), 0) + (found.isClipped ? ' (clipped)' : '')]];
   place('reading').replaceChildren(...rows.map(([key, text]) => make('tr', {}, make('th', { textContent: key }), make('td', { textContent: text }))));

@@ -51,12 +51,15 @@ function radianceAt(state, x, y) {
   const rest = view.around > 0 ? (isAdding ? addingAround : weidlichWilkieAround)(state, wo[2], around) : null;
   return { wi, wo, lamp, radiance: lit.map((value, b) => value + (mirror ? disc * lamp[b] * mirror[b] : 0) + (rest ? rest[b] : 0)) };
 }
+// The eye hardly sees an ultraviolet lamp: nothing is compared with a white that it lights.
+const isFaint = (white) => white[1] < 0.1 || Math.min(...white) <= 0;
+const isFaintLamp = () => isFaint(xyzOf(lampNow(), materialNow().weights));
 // A reading: radiance, and X, Y, Z and L*, a*, b* against a perfect white that lies there and is lit by the lamp.
 function readingAt(state, x, y) {
   const found = radianceAt(state, x, y);
   if (!found) return null;
   const { weights } = materialNow(), seen = xyzOf(found.radiance, weights), white = xyzOf(found.lamp, weights);
-  const level = white[1] * Math.max(found.wi[2], 0) / Math.PI, isWhite = level > 1e-9 && white.every((value) => value > 0);
+  const level = white[1] * Math.max(found.wi[2], 0) / Math.PI, isWhite = level > 1e-9 && !isFaint(white);
   const angle = (w) => Math.acos(clamp(w[2], -1, 1)) * 180 / Math.PI;
   const exposed = linearSrgb(seen.map((value) => value * exposureNow()));
   return { ...found, thetaI: angle(found.wi), thetaO: angle(found.wo), rgb: encodedSrgb(exposed),
