@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -82,8 +83,19 @@ private:
     }
 
     void add_adding();
+    void add_residual(const CosineTable& several);
+    void add_lobes(const std::vector<LobeShape>& lobes, std::size_t first);
+    void add_top();
     void add_weidlich_wilkie();
+    void add_layers(const std::vector<std::size_t>& interfaces);
+    void add_parts();
     void add_operator();
+    /// Table of the reflectance of a surface.
+    double reflectance_table(std::size_t element) {
+        return static_cast<double>(add_table([&](std::size_t b, double c) {
+            return facet_reflectance(*surface_of(stacks_[b][element]), c);
+        }));
+    }
 
     const Material& material_;
     GlslTables out_;
@@ -92,33 +104,38 @@ private:
 };
 
 void GlslTablesMaker::add_adding() {
-    const StackBsdf& middle = *models_[bands() / 2];
     // the light of several facets, whose shape is a table of thousands of numbers, joins the
     // residual
-    std::vector<LobeShape> lobes = middle.deeper_lobes();
+    std::vector<LobeShape> lobes = models_[bands() / 2]->deeper_lobes();
     const std::size_t first = !lobes.empty() && lobes.front().table ? 1 : 0;
-    const CosineTable shared = first == 1 ? lobe_albedo(lobes.front()) : CosineTable();
+    const CosineTable several = first == 1 ? lobe_albedo(lobes.front()) : CosineTable();
     lobes.erase(lobes.begin(), lobes.begin() + static_cast<std::ptrdiff_t>(first));
     if (first == 1)
         out_.left_out.push_back("The direction of light that met several facets of the first "
                                 "interface; its amount is there.");
-    std::size_t passages = 1;
-    for (const LobeShape& lobe : lobes)
-        passages = std::max(passages, lobe.passages.size());
-    define("RR_LOBES", static_cast<int>(lobes.size()));
-    define("RR_PASSAGES", static_cast<int>(passages));
-    define("RR_HAS_RATIO", 0);
-    define("RR_SPREADS", 0);
     if (material_.substrate.type == SubstrateType::OrenNayar && !material_.stack.layers.empty())
         out_.left_out.push_back("The substrate beneath the layers is Lambertian instead of Oren "
                                 "and Nayar's.");
     add_table([&](std::size_t b, double c) { return models_[b]->transmission(c); });
     add_table([&](std::size_t b, double c) { return models_[b]->specular_delta(c); });
+    add_residual(several);
+    add_lobes(lobes, first);
+    define_row("SCALE");
+    add_row([&](std::size_t b) { return models_[b]->diffuse_scale(); });
+    define_row("IOR");
+    add_row([&](std::size_t b) {
+        return stacks_[b].size() > 1 ? std::get<SurfaceValues>(stacks_[b].front()).ior_below : 1.0;
+    });
+    add_top();
+}
+
+/// The residual with the light of several facets, whose unit lobe has the albedo `several`; its
+/// tables are over the square root of its mean, times pi.
+void GlslTablesMaker::add_residual(const CosineTable& several) {
     const auto residual = [&](std::size_t b, double c) {
-        const double several = first == 1 && !models_[b]->deeper_lobes().empty()
-                                   ? std::pow(models_[b]->lobe_amplitude(0, c), 2) * shared(c)
-                                   : 0.0;
-        return models_[b]->residual(c) + several;
+        const double amplitude =
+            models_[b]->deeper_lobes().empty() ? 0.0 : models_[b]->lobe_amplitude(0, c);
+        return models_[b]->residual(c) + amplitude * amplitude * several(c);
     };
     std::vector<double> means;
     for (std::size_t b = 0; b < bands(); ++b)
@@ -127,22 +144,29 @@ void GlslTablesMaker::add_adding() {
     add_table([&](std::size_t b, double c) {
         return means[b] > 0.0 ? residual(b, c) / std::sqrt(std::numbers::pi * means[b]) : 0.0;
     });
+}
+
+/// Lobes of deeper interfaces, the model's from `first` on. Arrays of GLSL are never empty: a dark
+/// one ends them.
+void GlslTablesMaker::add_lobes(const std::vector<LobeShape>& lobes, std::size_t first) {
     for (std::size_t lobe = first; lobe < lobes.size() + first; ++lobe)
         add_table([&](std::size_t b, double c) {
             return lobe < models_[b]->deeper_lobes().size()
                        ? models_[b]->lobe_amplitude(static_cast<int>(lobe), c)
                        : 0.0;
         });
-    define_row("SCALE");
-    add_row([&](std::size_t b) { return models_[b]->diffuse_scale(); });
-    define_row("IOR");
-    add_row([&](std::size_t b) {
-        return stacks_[b].size() > 1 ? std::get<SurfaceValues>(stacks_[b].front()).ior_below : 1.0;
-    });
-    lobes.push_back({Distribution::Ggx, 1.0});
+    std::size_t passages = 1;
+    for (const LobeShape& lobe : lobes)
+        passages = std::max(passages, lobe.passages.size());
+    define("RR_LOBES", static_cast<int>(lobes.size()));
+    define("RR_PASSAGES", static_cast<int>(passages));
+    define("RR_HAS_RATIO", 0);
+    define("RR_SPREADS", 0);
+    std::vector<LobeShape> padded = lobes;
+    padded.push_back({Distribution::Ggx, 1.0});
     std::vector<double> distribution, alpha, ior;
     std::string passage;
-    for (const LobeShape& lobe : lobes) {
+    for (const LobeShape& lobe : padded) {
         distribution.push_back(kernel_distribution(lobe.distribution));
         alpha.push_back(lobe.alpha);
         ior.push_back(lobe.ior);
@@ -157,66 +181,76 @@ void GlslTablesMaker::add_adding() {
     constants("float", "rr_lobe_alpha", alpha);
     constants("float", "rr_lobe_ior", ior);
     out_.constants.push_back(
-        fmt::format("const vec3 rr_passage[{}] = vec3[]({});", lobes.size() * passages, passage));
-    const bool has_top = middle.has_top_lobe();
-    const Layer top = material_.stack.layers.empty() ? Layer{} : material_.stack.layers.front();
+        fmt::format("const vec3 rr_passage[{}] = vec3[]({});", padded.size() * passages, passage));
+}
+
+void GlslTablesMaker::add_top() {
+    const StackBsdf& middle = *models_[bands() / 2];
+    const bool is_bare = material_.stack.layers.empty();
+    const Layer top = is_bare ? Layer{} : material_.stack.layers.front();
     constant("int", "rr_top_distribution", kernel_distribution(top.distribution));
-    constant("float", "rr_top_alpha", has_top ? top.alpha : 0.0);
-    const bool bare = material_.stack.layers.empty();
-    constant("float", "rr_sigma", bare ? material_.substrate.sigma : 0.0);
+    constant("float", "rr_top_alpha", middle.has_top_lobe() ? top.alpha : 0.0);
+    constant("float", "rr_sigma", is_bare ? material_.substrate.sigma : 0.0);
     constant("float", "rr_lowest_ior", middle.lowest_ior());
     constant("float", "rr_mean_albedo", 1.0);
 }
 
 void GlslTablesMaker::add_weidlich_wilkie() {
-    const std::vector<Layer>& layers = material_.stack.layers;
-    define("RR_LAYERS", static_cast<int>(layers.size()));
+    define("RR_LAYERS", static_cast<int>(material_.stack.layers.size()));
     add_table([&](std::size_t b, double c) { return models_[b]->residual_amplitude(c); });
+    std::vector<std::size_t> interfaces;
+    for (std::size_t element = 0; element + 1 < stacks_.front().size(); ++element)
+        if (std::holds_alternative<SlabValues>(stacks_.front()[element + 1]))
+            interfaces.push_back(element);
+    add_layers(interfaces);
+    add_parts();
+    const bool is_metal = material_.substrate.type == SubstrateType::Conductor;
+    const Conductor& metal = material_.substrate.conductor;
+    constant("int", "rr_base_table",
+             is_metal ? reflectance_table(stacks_.front().size() - 1) : -1.0);
+    constant("float", "rr_base_alpha", is_metal ? metal.alpha : 0.0);
+    constant("int", "rr_base_distribution", kernel_distribution(metal.distribution));
+    constant("float", "rr_sigma", material_.substrate.sigma);
+}
+
+/// Indices and depths of the layers whose interfaces stand at these elements.
+void GlslTablesMaker::add_layers(const std::vector<std::size_t>& interfaces) {
+    define_row("IOR");
+    for (const std::size_t e : interfaces)
+        add_row([&](std::size_t b) { return std::get<SurfaceValues>(stacks_[b][e]).ior_below; });
+    if (interfaces.empty())
+        add_row([](std::size_t) { return 1.0; });
+    define_row("DEPTH");
+    for (const std::size_t e : interfaces) {
+        add_row([&](std::size_t b) { return std::get<SlabValues>(stacks_[b][e + 1]).depth(); });
+        add_row([&](std::size_t b) {
+            const SlabValues& slab = std::get<SlabValues>(stacks_[b][e + 1]);
+            return slab.scatters() ? slab.tau_scattering / slab.depth() : 0.0;
+        });
+    }
+}
+
+/// Interfaces and flakes; one of nothing ends the arrays.
+void GlslTablesMaker::add_parts() {
     std::vector<double> distribution, alpha, table, anisotropy, cloudy, coverage, flake_alpha,
         flake_distribution, flake_table;
-    std::vector<std::size_t> interfaces, slabs;
-    const auto table_of = [&](std::size_t element) {
-        return static_cast<double>(add_table([&](std::size_t b, double c) {
-            return facet_reflectance(*surface_of(stacks_[b][element]), c);
-        }));
-    };
+    std::vector<Layer> layers = material_.stack.layers;
+    layers.emplace_back();
     std::size_t element = 0;
     for (const Layer& layer : layers) {
-        interfaces.push_back(element);
-        slabs.push_back(element + 1);
         distribution.push_back(kernel_distribution(layer.distribution));
         alpha.push_back(layer.alpha);
-        table.push_back(layer.film ? table_of(element) : -1.0);
+        table.push_back(layer.film ? reflectance_table(element) : -1.0);
         anisotropy.push_back(layer.anisotropy);
         cloudy.push_back(layer.scatters() ? 1.0 : 0.0);
         element += 2;
         const bool has_flakes = layer.flakes && layer.flakes->coverage > 0.0;
-        coverage.push_back(has_flakes ? layer.flakes->coverage : 0.0);
-        flake_alpha.push_back(has_flakes ? layer.flakes->reflector.alpha : 0.0);
-        flake_distribution.push_back(
-            has_flakes ? kernel_distribution(layer.flakes->reflector.distribution) : 2.0);
-        flake_table.push_back(has_flakes ? table_of(element++) : -1.0);
+        const Flakes flakes = has_flakes ? *layer.flakes : Flakes{};
+        coverage.push_back(flakes.coverage);
+        flake_alpha.push_back(flakes.reflector.alpha);
+        flake_distribution.push_back(kernel_distribution(flakes.reflector.distribution));
+        flake_table.push_back(has_flakes ? reflectance_table(element++) : -1.0);
     }
-    define_row("IOR");
-    for (const std::size_t e : interfaces)
-        add_row([&](std::size_t b) { return std::get<SurfaceValues>(stacks_[b][e]).ior_below; });
-    if (layers.empty())
-        add_row([](std::size_t) { return 1.0; });
-    define_row("DEPTH");
-    for (const std::size_t e : slabs) {
-        add_row([&](std::size_t b) { return std::get<SlabValues>(stacks_[b][e]).depth(); });
-        add_row([&](std::size_t b) {
-            const SlabValues& slab = std::get<SlabValues>(stacks_[b][e]);
-            return slab.scatters() ? slab.tau_scattering / slab.depth() : 0.0;
-        });
-    }
-    const bool is_metal = material_.substrate.type == SubstrateType::Conductor;
-    for (auto* list : {&alpha, &anisotropy, &cloudy, &coverage, &flake_alpha})
-        list->push_back(0.0);
-    for (auto* list : {&distribution, &flake_distribution})
-        list->push_back(2.0);
-    for (auto* list : {&table, &flake_table})
-        list->push_back(-1.0);
     constants("int", "rr_layer_distribution", distribution);
     constants("float", "rr_layer_alpha", alpha);
     constants("int", "rr_layer_table", table);
@@ -226,11 +260,6 @@ void GlslTablesMaker::add_weidlich_wilkie() {
     constants("float", "rr_flake_alpha", flake_alpha);
     constants("int", "rr_flake_distribution", flake_distribution);
     constants("int", "rr_flake_table", flake_table);
-    constant("int", "rr_base_table", is_metal ? table_of(stacks_.front().size() - 1) : -1.0);
-    const Conductor& metal = material_.substrate.conductor;
-    constant("float", "rr_base_alpha", is_metal ? metal.alpha : 0.0);
-    constant("int", "rr_base_distribution", kernel_distribution(metal.distribution));
-    constant("float", "rr_sigma", material_.substrate.sigma);
 }
 
 /// The substrate's operator, with all that layers send back to it.

@@ -5,8 +5,11 @@ const fold = (id, summary, ...parts) => {
   return details;
 };
 function picked(id, label, options, value, change) {
-  const select = make('select', { id, onchange: () => change(select.value) },
-    ...options.map(([key, text]) => make('option', { value: key, textContent: text })));
+  const select = make(
+    'select',
+    { id, onchange: () => change(select.value) },
+    ...options.map(([key, text]) => make('option', { value: key, textContent: text })),
+  );
   select.value = value;
   return make('label', { className: 'row' }, make('span', { textContent: label }), select);
 }
@@ -14,7 +17,10 @@ function slid(id, label, range, value, change, shown) {
   const input = make('input', { type: 'range', id, min: range[0], max: range[1], step: range[2], value });
   const output = make('output', { textContent: shown(value) });
   output.htmlFor = id;
-  input.oninput = () => { output.textContent = shown(Number(input.value)); change(Number(input.value)); };
+  input.oninput = () => {
+    output.textContent = shown(Number(input.value));
+    change(Number(input.value));
+  };
   return make('label', { className: 'row' }, make('span', { textContent: label }), input, output);
 }
 function fileRow(id, label, accept, take) {
@@ -26,20 +32,40 @@ function said(text, isError) {
   place('message').textContent = text;
   place('message').classList.toggle('error', Boolean(isError));
 }
-const attempt = (work) => Promise.resolve().then(work).catch((error) => said(error.message, true));
+const attempt = (work) =>
+  Promise.resolve()
+    .then(work)
+    .catch((error) => said(error.message, true));
 
 const times = (value) => '× ' + Number(value).toPrecision(3);
 function materialSliders() {
-  const material = materialNow(), set = (key) => (value) => { view.sliders[key] = value; changed(); };
-  const rows = [], sliders = view.sliders;
+  const material = materialNow(),
+    set = (key) => (value) => {
+      view.sliders[key] = value;
+      changed();
+    };
+  const rows = [],
+    sliders = view.sliders;
   if (isRoughnessFree(material))
-    rows.push(slid('alpha', 'Roughness', [0, 0.6, 0.005], sliders.alpha, set('alpha'), (v) => 'alpha ' + Number(v).toFixed(3)));
+    rows.push(
+      slid('alpha', 'Roughness', [0, 0.6, 0.005], sliders.alpha, set('alpha'), (v) => 'alpha ' + Number(v).toFixed(3)),
+    );
   if (canDeepen(material))
-    rows.push(slid('thickness', 'Thickness', [0, 4, 0.05], 1, set('thickness'), times),
-      slid('absorption', 'Absorption', [0, 4, 0.05], 1, set('absorption'), times));
-  if (hasDye(material)) rows.push(slid('dye', 'Dye (re-radiation)', [0, 1, 0.01], 1, set('dye'), (v) => Math.round(100 * v) + ' %'));
-  if (rows.length === 0) rows.push(make('p', { className: 'caption', textContent: viewData.gallery
-      ? 'Pages of one material (view --preset ' + material.name + ') have sliders.' : 'Nothing of this material slides here.' }));
+    rows.push(
+      slid('thickness', 'Thickness', [0, 4, 0.05], 1, set('thickness'), times),
+      slid('absorption', 'Absorption', [0, 4, 0.05], 1, set('absorption'), times),
+    );
+  if (hasDye(material))
+    rows.push(slid('dye', 'Dye (re-radiation)', [0, 1, 0.01], 1, set('dye'), (v) => Math.round(100 * v) + ' %'));
+  if (rows.length === 0)
+    rows.push(
+      make('p', {
+        className: 'caption',
+        textContent: viewData.gallery
+          ? 'Pages of one material (view --preset ' + material.name + ') have sliders.'
+          : 'Nothing of this material slides here.',
+      }),
+    );
   return rows;
 }
 function modelNames(material) {
@@ -49,36 +75,156 @@ function modelNames(material) {
 function buildMaterialControls() {
   const material = materialNow();
   place('material-controls').replaceChildren(
-    ...materials.length > 1 ? [picked('material', 'Material', materials.map((one, k) => [String(k), one.name]), String(view.material), chooseMaterial)] : [],
-    picked('model', 'Model', modelNames(material), view.model, (value) => { view.model = view.asked = value; showDivider(); changed(); }),
-    make('div', { id: 'divider-row' }, slid('divider', 'Divider', [0, 1, 0.01], view.divider, (value) => { view.divider = value; redraw(); }, (v) => Math.round(100 * v) + ' %')),
+    ...(materials.length > 1
+      ? [
+          picked(
+            'material',
+            'Material',
+            materials.map((one, k) => [String(k), one.name]),
+            String(view.material),
+            chooseMaterial,
+          ),
+        ]
+      : []),
+    picked('model', 'Model', modelNames(material), view.model, (value) => {
+      view.model = view.asked = value;
+      showDivider();
+      changed();
+    }),
+    make(
+      'div',
+      { id: 'divider-row' },
+      slid(
+        'divider',
+        'Divider',
+        [0, 1, 0.01],
+        view.divider,
+        (value) => {
+          view.divider = value;
+          redraw();
+        },
+        (v) => Math.round(100 * v) + ' %',
+      ),
+    ),
     ...materialSliders(),
-    make('div', { className: 'buttons' },
+    make(
+      'div',
+      { className: 'buttons' },
       make('button', { type: 'button', id: 'copy-toml', textContent: 'Copy as TOML', onclick: copyToml }),
-      ...hasDye(material) ? [make('button', { type: 'button', id: 'save-matrix', textContent: 'Save its matrix', onclick: saveMatrix })] : [],
-      make('button', { type: 'button', id: 'reset', textContent: 'Reset', onclick: () => chooseMaterial(view.material) })),
-    fold('toml-text', 'The file as text', make('pre', { id: 'toml' })));
+      ...(hasDye(material)
+        ? [make('button', { type: 'button', id: 'save-matrix', textContent: 'Save its matrix', onclick: saveMatrix })]
+        : []),
+      make('button', {
+        type: 'button',
+        id: 'reset',
+        textContent: 'Reset',
+        onclick: () => chooseMaterial(view.material),
+      }),
+    ),
+    fold('toml-text', 'The file as text', make('pre', { id: 'toml' })),
+  );
   place('notes').replaceChildren(...material.notes.map((text) => make('p', { className: 'note', textContent: text })));
   showDivider();
 }
-function showDivider() { place('divider-row').hidden = view.model !== 'both'; }
+function showDivider() {
+  place('divider-row').hidden = view.model !== 'both';
+}
 function buildLightControls() {
   const pasted = make('textarea', { id: 'lamp-text', rows: 4, placeholder: '380, 0.1\n390, 0.4\n...' });
   place('light-controls').replaceChildren(
-    picked('lamp', 'Lamp', lamps.map((lamp, k) => [String(k), lamp.name]), String(view.lamp), (value) => { view.lamp = Number(value); changed(); }),
-    slid('uv', 'Ultraviolet, below 400 nm', [0, 3, 0.05], view.uv, (value) => { view.uv = value; changed(); }, times),
-    slid('radius', "Lamp's radius", [0, 20, 0.5], view.lampRadius, (value) => { view.lampRadius = value; redraw(); }, (v) => Number(v).toFixed(1) + '°'),
-    slid('around', 'Light from all around', [0, 1, 0.05], view.around, (value) => { view.around = value; changed(); }, (v) => Math.round(100 * v) + ' %'),
-    slid('exposure', 'Exposure', [-4, 4, 0.25], view.exposure, (value) => { view.exposure = value; changed(); }, (v) => (v > 0 ? '+' : '') + v + ' EV'),
-    fold('own-lamp', 'A lamp of my own', make('label', {}, make('span', { textContent: 'Wavelength in nm and value, a pair a line' }), pasted),
-      make('div', { className: 'buttons' }, make('button', { type: 'button', id: 'take-lamp', textContent: 'Take it', onclick: () => attempt(() => addLamp(pasted.value, 'my lamp')) })),
-      fileRow('lamp-file', 'or a file (SPD, CSV)', '.spd,.csv,.txt', (file) => attempt(async () => addLamp(await file.text(), file.name)))));
+    picked(
+      'lamp',
+      'Lamp',
+      lamps.map((lamp, k) => [String(k), lamp.name]),
+      String(view.lamp),
+      (value) => {
+        view.lamp = Number(value);
+        changed();
+      },
+    ),
+    slid(
+      'uv',
+      'Ultraviolet, below 400 nm',
+      [0, 3, 0.05],
+      view.uv,
+      (value) => {
+        view.uv = value;
+        changed();
+      },
+      times,
+    ),
+    slid(
+      'radius',
+      "Lamp's radius",
+      [0, 20, 0.5],
+      view.lampRadius,
+      (value) => {
+        view.lampRadius = value;
+        redraw();
+      },
+      (v) => Number(v).toFixed(1) + '°',
+    ),
+    slid(
+      'around',
+      'Light from all around',
+      [0, 1, 0.05],
+      view.around,
+      (value) => {
+        view.around = value;
+        changed();
+      },
+      (v) => Math.round(100 * v) + ' %',
+    ),
+    slid(
+      'exposure',
+      'Exposure',
+      [-4, 4, 0.25],
+      view.exposure,
+      (value) => {
+        view.exposure = value;
+        changed();
+      },
+      (v) => (v > 0 ? '+' : '') + v + ' EV',
+    ),
+    fold(
+      'own-lamp',
+      'A lamp of my own',
+      make('label', {}, make('span', { textContent: 'Wavelength in nm and value, a pair a line' }), pasted),
+      make(
+        'div',
+        { className: 'buttons' },
+        make('button', {
+          type: 'button',
+          id: 'take-lamp',
+          textContent: 'Take it',
+          onclick: () => attempt(() => addLamp(pasted.value, 'my lamp')),
+        }),
+      ),
+      fileRow('lamp-file', 'or a file (SPD, CSV)', '.spd,.csv,.txt', (file) =>
+        attempt(async () => addLamp(await file.text(), file.name)),
+      ),
+    ),
+  );
 }
 function buildShapeControls() {
   place('shape-controls').replaceChildren(
     picked('shape', 'Shape', Object.entries(SHAPES), view.shape, chooseShape),
-    picked('drag', 'Dragging turns', [['lamp', 'the lamp'], ['object', 'the object']], view.drag, (value) => { view.drag = value; }),
-    fileRow('mesh-file', 'My own shape (OBJ, PLY)', '.obj,.ply', (file) => attempt(async () => takeMesh(await file.text(), file.name))));
+    picked(
+      'drag',
+      'Dragging turns',
+      [
+        ['lamp', 'the lamp'],
+        ['object', 'the object'],
+      ],
+      view.drag,
+      (value) => {
+        view.drag = value;
+      },
+    ),
+    fileRow('mesh-file', 'My own shape (OBJ, PLY)', '.obj,.ply', (file) =>
+      attempt(async () => takeMesh(await file.text(), file.name)),
+    ),
+  );
 }
 function addLamp(text, name) {
   lamps.push(lampFromText(text, name));
@@ -104,7 +250,7 @@ function chooseShape(shape) {
 function chooseMaterial(index) {
   view.material = Number(index);
   const { models } = materialNow();
-  view.model = models.includes(view.asked) || view.asked === 'both' && models.length > 1 ? view.asked : models[0];
+  view.model = models.includes(view.asked) || (view.asked === 'both' && models.length > 1) ? view.asked : models[0];
   resetSliders();
   buildMaterialControls();
   for (const button of document.querySelectorAll('#gallery button'))
@@ -112,13 +258,19 @@ function chooseMaterial(index) {
   changed();
 }
 function copyToml() {
-  const text = materialToml(materialNow(), view.sliders), by = navigator.clipboard && navigator.clipboard.writeText(text);
+  const text = materialToml(materialNow(), view.sliders),
+    by = navigator.clipboard && navigator.clipboard.writeText(text);
   place('toml-text').open = true;
   if (!by) return said('Mark the text below and copy it.');
-  by.then(() => said('Copied.'), () => said('Mark the text below and copy it.'));
+  by.then(
+    () => said('Copied.'),
+    () => said('Mark the text below and copy it.'),
+  );
 }
 function saveMatrix() {
-  const link = make('a', { download: matrixFileName(materialNow()),
-    href: URL.createObjectURL(new Blob([matrixCsv(materialNow(), view.sliders)], { type: 'text/csv' })) });
+  const link = make('a', {
+    download: matrixFileName(materialNow()),
+    href: URL.createObjectURL(new Blob([matrixCsv(materialNow(), view.sliders)], { type: 'text/csv' })),
+  });
   link.click();
 }

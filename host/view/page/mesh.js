@@ -1,12 +1,14 @@
 // A shape of the reader's own: triangles of an OBJ or PLY file (text), centred in the unit sphere.
 function objTriangles(text) {
-  const places = [], triangles = [];
+  const places = [],
+    triangles = [];
   text.split(/\r\n|\r|\n/).forEach((line, index) => {
     const words = line.trim().split(/\s+/);
     if (words[0] === 'v') places.push(words.slice(1, 4).map(Number));
     if (words[0] !== 'f') return;
     const corners = words.slice(1).map((word) => {
-      const number = parseInt(word, 10), at = number < 0 ? places.length + number : number - 1;
+      const number = parseInt(word, 10),
+        at = number < 0 ? places.length + number : number - 1;
       if (!places[at]) throw new Error('line ' + (index + 1) + ' names a corner that is not there');
       return places[at];
     });
@@ -17,13 +19,23 @@ function objTriangles(text) {
 function plyTriangles(text) {
   if (!/format ascii/.test(text.slice(0, 400)))
     throw new Error('a binary PLY is not read here; save it as text (ascii), or as OBJ');
-  const [head, body] = text.split(/end_header\s*\n/), count = (name) => Number((head.match('element ' + name + '\\s+(\\d+)') || [])[1]);
+  const [head, body] = text.split(/end_header\s*\n/),
+    count = (name) => Number((head.match('element ' + name + '\\s+(\\d+)') || [])[1]);
   const properties = [...head.split('element face')[0].matchAll(/property\s+\w+\s+(\w+)/g)].map((found) => found[1]);
-  const axes = ['x', 'y', 'z'].map((axis) => properties.indexOf(axis)), lines = body.trim().split(/\r?\n/);
-  const places = lines.slice(0, count('vertex')).map((line) => { const words = line.trim().split(/\s+/).map(Number); return axes.map((k) => words[k]); });
+  const axes = ['x', 'y', 'z'].map((axis) => properties.indexOf(axis)),
+    lines = body.trim().split(/\r?\n/);
+  const places = lines.slice(0, count('vertex')).map((line) => {
+    const words = line.trim().split(/\s+/).map(Number);
+    return axes.map((k) => words[k]);
+  });
   const triangles = [];
   for (const line of lines.slice(count('vertex'), count('vertex') + count('face'))) {
-    const corners = line.trim().split(/\s+/).map(Number).slice(1).map((k) => places[k]);
+    const corners = line
+      .trim()
+      .split(/\s+/)
+      .map(Number)
+      .slice(1)
+      .map((k) => places[k]);
     for (let k = 2; k < corners.length; ++k) triangles.push(corners[0], corners[k - 1], corners[k]);
   }
   return triangles;
@@ -41,7 +53,8 @@ function meshFromText(text, name) {
   const high = [0, 1, 2].map((k) => corners.reduce((most, p) => Math.max(most, p[k]), -Infinity));
   const middle = low.map((value, k) => 0.5 * (value + high[k]));
   const size = corners.reduce((most, p) => Math.max(most, Math.hypot(...p.map((x, k) => x - middle[k]))), 1e-30);
-  const placed = corners.map((p) => p.map((x, k) => (x - middle[k]) / size)), sums = new Map();
+  const placed = corners.map((p) => p.map((x, k) => (x - middle[k]) / size)),
+    sums = new Map();
   for (let t = 0; t < placed.length; t += 3) {
     const normal = crossed(added(placed[t + 1], scaled(placed[t], -1)), added(placed[t + 2], scaled(placed[t], -1)));
     for (let k = 0; k < 3; ++k) {
@@ -49,8 +62,12 @@ function meshFromText(text, name) {
       sums.set(key, added(sums.get(key) || [0, 0, 0], normal));
     }
   }
-  return { name, positions: placed.flat(), normals: placed.flatMap((p) => {
-    const sum = sums.get(p.join(' '));
-    return dot(sum, sum) > 0 ? unit(sum) : [0, 0, 1];
-  }) };
+  return {
+    name,
+    positions: placed.flat(),
+    normals: placed.flatMap((p) => {
+      const sum = sums.get(p.join(' '));
+      return dot(sum, sum) > 0 ? unit(sum) : [0, 0, 1];
+    }),
+  };
 }

@@ -3,9 +3,15 @@ const nodeCosine = (k) => square(k / (NODES - 1));
 
 // A matrix that is no sum of few terms is applied in the script, for every direction of the lamp's light.
 function denseTables(state, lamp) {
-  const through = (b, c) => state.model === 'adding' ? lookUp(state.transmission[b], c) : straight(state, b, c).through;
+  const through = (b, c) =>
+    state.model === 'adding' ? lookUp(state.transmission[b], c) : straight(state, b, c).through;
   return state.operators.map((operator) => {
-    const byNode = Array.from({ length: NODES }, (_, k) => applied(operator, lamp.map((value, b) => value * through(b, nodeCosine(k)))));
+    const byNode = Array.from({ length: NODES }, (_, k) =>
+      applied(
+        operator,
+        lamp.map((value, b) => value * through(b, nodeCosine(k))),
+      ),
+    );
     return lamp.map((_, b) => Float64Array.from(byNode, (sent) => sent[b]));
   });
 }
@@ -26,7 +32,9 @@ class Picture {
   // Takes a state and the light (radiance of the lamp by band, of what is around it, rows for r, g, b).
   prepare(state, lamp, around, screen) {
     const layout = state.model === 'adding' ? addingLayout(state) : weidlichWilkieLayout(state);
-    const isDense = Boolean(state.operators[0].dense), rows = [], defines = { RR_CHUNKS: chunksOf(lamp.length), RR_NODES: FINE_NODES };
+    const isDense = Boolean(state.operators[0].dense),
+      rows = [],
+      defines = { RR_CHUNKS: chunksOf(lamp.length), RR_NODES: FINE_NODES };
     for (const [name, some] of Object.entries({ LAMP: [lamp], WEIGHT: screen, ...layout.rows })) {
       defines['RR_' + name + '_ROW'] = rows.length;
       rows.push(...some);
@@ -39,7 +47,11 @@ class Picture {
     defines.RR_AROUND = tables.length;
     this.isAround = around.some((value) => value > 0);
     if (this.isAround) tables.push(aroundTable(state, around));
-    Object.assign(defines, layout.defines, { RR_TERMS: state.operators[0].emission.length, RR_OPERATORS: state.operators.length, RR_DENSE: Number(isDense) });
+    Object.assign(defines, layout.defines, {
+      RR_TERMS: state.operators[0].emission.length,
+      RR_OPERATORS: state.operators.length,
+      RR_DENSE: Number(isDense),
+    });
     this.uniforms = layout.uniforms;
     this.program = this.programOf(state.model, defines, layout.uniforms);
     this.upload(rows, tables, layout.shapes, lamp.length);
@@ -47,21 +59,41 @@ class Picture {
   programOf(model, defines, uniforms) {
     const arrays = Object.keys(uniforms).map((key) => {
       const [type, name] = key.split(' ');
-      return 'uniform ' + type + ' ' + (name.endsWith('[]') ? name.slice(0, -1) + uniforms[key].length / (type === 'vec3' ? 3 : 1) + ']' : name) + ';\n';
+      return (
+        'uniform ' +
+        type +
+        ' ' +
+        (name.endsWith('[]') ? name.slice(0, -1) + uniforms[key].length / (type === 'vec3' ? 3 : 1) + ']' : name) +
+        ';\n'
+      );
     });
-    const source = Object.entries(defines).map(([name, value]) => '#define ' + name + ' ' + value + '\n').join('') +
-      shaderParts.access + arrays.join('') + shaderParts.material + shaderParts[model] + shaderParts.render;
+    const source =
+      Object.entries(defines)
+        .map(([name, value]) => '#define ' + name + ' ' + value + '\n')
+        .join('') +
+      shaderParts.access +
+      arrays.join('') +
+      shaderParts.material +
+      shaderParts[model] +
+      shaderParts.render;
     if (!this.programs.has(source)) this.programs.set(source, linkedProgram(this.gl, source));
     return this.programs.get(source);
   }
   upload(rows, tables, shapes, bands) {
     const gl = this.gl;
     this.textures.forEach((one) => gl.deleteTexture(one));
-    this.textures = [bandTexture(gl, rows, bands), nodeTexture(gl, tables, bands),
-      ...shapes.map((values, k) => values ? texture(gl, k === 2 ? values.length : 17, k === 2 ? 1 : 256, values, ['R32F', 'RED']) : null)];
+    this.textures = [
+      bandTexture(gl, rows, bands),
+      nodeTexture(gl, tables, bands),
+      ...shapes.map((values, k) =>
+        values ? texture(gl, k === 2 ? values.length : 17, k === 2 ? 1 : 256, values, ['R32F', 'RED']) : null,
+      ),
+    ];
   }
   setUniforms(view, size, turn) {
-    const gl = this.gl, at = (name) => gl.getUniformLocation(this.program, name), lamp = lampDirection(view);
+    const gl = this.gl,
+      at = (name) => gl.getUniformLocation(this.program, name),
+      lamp = lampDirection(view);
     for (const [key, value] of Object.entries(this.uniforms)) {
       const [type, name] = key.split(' ');
       if (name.endsWith('[]')) gl[GLSL_ARRAYS[type]](at(name.slice(0, -2)), value);
@@ -88,7 +120,8 @@ class Picture {
   }
   // Draws the columns from `left` to `right` of a square canvas.
   draw(view, mesh, size, left, right) {
-    const gl = this.gl, isMesh = view.shape === 'mesh' && mesh;
+    const gl = this.gl,
+      isMesh = view.shape === 'mesh' && mesh;
     if (right <= left) return;
     gl.useProgram(this.program);
     this.setUniforms(view, size, objectTurn(view));
@@ -98,7 +131,12 @@ class Picture {
     gl[isMesh ? 'enable' : 'disable'](gl.DEPTH_TEST);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const [positions, normals] = isMesh ? [mesh.positions, mesh.normals] : [[-1, -1, 0, 3, -1, 0, -1, 3, 0], [0, 0, 1, 0, 0, 1, 0, 0, 1]];
+    const [positions, normals] = isMesh
+      ? [mesh.positions, mesh.normals]
+      : [
+          [-1, -1, 0, 3, -1, 0, -1, 3, 0],
+          [0, 0, 1, 0, 0, 1, 0, 0, 1],
+        ];
     if (view.shape === 'mesh' && !mesh) return;
     const buffers = [positions, normals].map((values, k) => {
       const buffer = gl.createBuffer();

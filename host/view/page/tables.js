@@ -15,8 +15,7 @@ function unpackGrid(grid) {
   grid.numbers = decode(grid.numbers, Float32Array);
   grid.stride = 2 + grid.tables * NODES;
   for (const shape of grid.shapes || [])
-    for (const lobe of shape.lobes)
-      if (lobe.ratio) lobe.ratio = decode(lobe.ratio, Float32Array);
+    for (const lobe of shape.lobes) if (lobe.ratio) lobe.ratio = decode(lobe.ratio, Float32Array);
   if (grid.orenNayar)
     for (const key of ['albedo', 'spread']) grid.orenNayar[key] = decode(grid.orenNayar[key], Float32Array);
 }
@@ -35,13 +34,17 @@ function unpackMaterial(material) {
 
 // Nodes and weights of a place among ascending nodes: cubic (Lagrange) in between, held at the ends.
 function lagrange(nodes, place) {
-  const count = nodes.length, x = clamp(place, nodes[0], nodes[count - 1]);
+  const count = nodes.length,
+    x = clamp(place, nodes[0], nodes[count - 1]);
   const exact = nodes.findIndex((node) => Math.abs(node - x) <= 1e-7 * (node || 1));
   if (exact >= 0) return [[exact, 1]];
   const right = nodes.findIndex((node) => node > x);
-  const first = clamp(right - 2, 0, Math.max(0, count - 4)), used = nodes.slice(first, first + 4);
-  return used.map((own, k) => [first + k,
-    used.reduce((weight, other, j) => j === k ? weight : weight * (x - other) / (own - other), 1)]);
+  const first = clamp(right - 2, 0, Math.max(0, count - 4)),
+    used = nodes.slice(first, first + 4);
+  return used.map((own, k) => [
+    first + k,
+    used.reduce((weight, other, j) => (j === k ? weight : (weight * (x - other)) / (own - other)), 1),
+  ]);
 }
 function linear(nodes, place) {
   const right = nodes.findIndex((node) => node >= place - 1e-9);
@@ -64,7 +67,8 @@ function atDepth(grid, alpha, cls, depth) {
 function between(grid, place, cls, depth) {
   const high = atDepth(grid, place.high, cls, depth);
   if (place.low === place.high) return high;
-  const low = atDepth(grid, place.low, cls, depth), fromSmooth = grid.alphas[place.low] === 0;
+  const low = atDepth(grid, place.low, cls, depth),
+    fromSmooth = grid.alphas[place.low] === 0;
   const lobes = grid.shapes ? grid.shapes[place.high].lobes : [];
   const sum = low.map((value, i) => value + place.t * (high[i] - value));
   if (fromSmooth && grid.shapes) {
@@ -82,7 +86,8 @@ function bandNumbers(grid, sliders) {
   const known = new Map();
   return grid.classOf.map((cls, band) => {
     const factor = grid.nodes.length > 1 ? sliders.thickness * sliders.absorption : 1;
-    const depth = grid.depths[band] * factor, key = cls + ' ' + depth;
+    const depth = grid.depths[band] * factor,
+      key = cls + ' ' + depth;
     if (!known.has(key)) known.set(key, between(grid, place, cls, depth));
     return known.get(key);
   });
@@ -92,7 +97,9 @@ const table = (numbers, index) => numbers.subarray(2 + index * NODES, 2 + (index
 const scaledTable = (values, factor) => values.map((value) => value * factor);
 // Catmull-Rom between the nodes, as `measure` looks its tables up.
 function lookUp(values, cosine) {
-  const x = Math.sqrt(clamp(cosine, 0, 1)) * (NODES - 1), i = Math.min(Math.floor(x), NODES - 2), t = x - i;
+  const x = Math.sqrt(clamp(cosine, 0, 1)) * (NODES - 1),
+    i = Math.min(Math.floor(x), NODES - 2),
+    t = x - i;
   const low = i > 0 ? 0.5 * (values[i + 1] - values[i - 1]) : values[1] - values[0];
   const high = i + 2 < NODES ? 0.5 * (values[i + 2] - values[i]) : values[i + 1] - values[i];
   const rise = values[i + 1] - values[i];
