@@ -5,6 +5,7 @@
 #include "host/measure/measure_substrate.h"
 #include "host/scene/model/closed_model.h"
 #include "host/scene/model/model_choice.h"
+#include "host/view/tables/dyed_tables.h"
 #include "host/view/tables/model_tables.h"
 #include "reradiant/colour.h"
 #include "reradiant/error.h"
@@ -24,6 +25,10 @@ namespace {
 /// Re-radiation that so few terms hold to this share of it is applied as a running sum.
 constexpr int most_terms = 6;
 constexpr double factor_tolerance = 1e-4;
+
+/// Nodes of the cosines of light that dyes in layers send out: to 0.2 % of it, and to some per
+/// cent.
+constexpr int dyed_nodes = 8, gallery_dyed_nodes = 5;
 
 std::string spectrum_on(const Spectrum& spectrum, const WavelengthGrid& bands) {
     return encoded_floats(spectrum.at(bands.centres_nm()));
@@ -157,21 +162,34 @@ std::string observer_weights(const WavelengthGrid& bands) {
 
 } // namespace
 
+namespace {
+
+/// Returns why no model of a page can show a material, or nothing if one can.
+std::optional<std::string> page_refusal(const Material& material) {
+    if (material.stack.is_sheet())
+        return "a page shows no sheets";
+    if (material.stack.is_dyed())
+        return adding_refusal(material);
+    return std::nullopt;
+}
+
+} // namespace
+
 bool is_shown_on_pages(const Material& material) {
-    return !weidlich_wilkie_refusal(material);
+    return !page_refusal(material);
 }
 
 ViewedModels viewed_models(const Material& material) {
-    const std::optional<std::string> adding = adding_refusal(material);
-    const std::optional<std::string> closed_form = weidlich_wilkie_refusal(material);
-    // tables of dyed slabs and of sheets go with no page: only weidlich-wilkie would remain
-    if (closed_form)
+    if (const std::optional<std::string> refusal = page_refusal(material))
         throw_input_error(material.position,
-                          fmt::format("no model of a page can show this: {}, and the tables that "
-                                      "adding needs for it are left out of pages",
-                                      *closed_form),
+                          fmt::format("no model of a page can show this: {}", *refusal),
                           "`render` and `measure` show it");
+    if (material.stack.is_dyed())
+        return {{Model::Adding},
+                {"Dyes in its layers are shown by adding as they are: nothing of them slides here, "
+                 "and weidlich-wilkie does not know them."}};
     ViewedModels viewed;
+    const std::optional<std::string> adding = adding_refusal(material);
     if (adding)
         viewed.notes.push_back(
             fmt::format("Shown by weidlich-wilkie, which is approximate and does not conserve "
@@ -197,6 +215,10 @@ Json material_data(const ViewedMaterial& viewed, bool with_sliders) {
         {"layers", layers_json(material, bands)},
         {"substrate", substrate_json(material, bands)},
         {"weights", observer_weights(bands)}};
+    if (material.stack.is_dyed()) {
+        json["dyed"] = dyed_tables(material, bands, with_sliders ? dyed_nodes : gallery_dyed_nodes);
+        with_sliders = false;
+    }
     for (const Model model : models.models) {
         json["models"].push_back(model_name(model));
         json[model_name(model)] = model == Model::Adding

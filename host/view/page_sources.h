@@ -9,6 +9,7 @@ extern const char* const view_tables_js;
 extern const char* const view_optics_js;
 extern const char* const view_models_js;
 extern const char* const view_weidlich_wilkie_js;
+extern const char* const view_dyes_js;
 extern const char* const view_spectra_js;
 extern const char* const view_scene_js;
 extern const char* const view_mesh_js;

@@ -51,9 +51,9 @@ std::string joined(std::initializer_list<const char*> parts) {
 
 std::string script() {
     return joined({page_script, view_tables_js, view_optics_js, view_models_js,
-                   view_weidlich_wilkie_js, view_spectra_js, view_scene_js, view_mesh_js,
-                   view_gpu_js, view_picture_js, view_toml_js, view_reading_js, view_controls_js,
-                   view_main_js});
+                   view_weidlich_wilkie_js, view_dyes_js, view_spectra_js, view_scene_js,
+                   view_mesh_js, view_gpu_js, view_picture_js, view_toml_js, view_reading_js,
+                   view_controls_js, view_main_js});
 }
 
 Json shaders_json() {

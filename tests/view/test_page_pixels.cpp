@@ -156,6 +156,17 @@ TEST_F(PagePixels, WeidlichWilkieIsThatOfMeasure) {
     }
 }
 
+// Between Chebyshev's nodes of both cosines; clouds and rough faces too.
+TEST_F(PagePixels, DyesInLayersAreThoseOfMeasure) {
+    for (const char* preset : {"fluorescent-varnish-on-white", "fluorescent-varnish-on-black",
+                               "highlighter-on-paper", "brightened-coating-on-paper"}) {
+        const PageErrors errors = errors_of(preset, Model::Adding);
+        EXPECT_LT(errors.radiance, 0.01) << preset;
+        EXPECT_LT(errors.ciede2000, 1.0) << preset;
+        EXPECT_LT(errors.drawn, 1.5) << preset;
+    }
+}
+
 // Beyond the six: an Oren-Nayar substrate, films, clouds, flakes, metals under coats.
 TEST_F(PagePixels, OtherMaterialsAreThoseOfMeasureToo) {
     for (const char* preset : {"house-paint", "sugar", "lepidolite-flake"})

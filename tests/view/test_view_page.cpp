@@ -27,8 +27,8 @@ TEST(ViewPage, NeedsNothingElse) {
 
 // The goal is 1.5 MB; rough stacks with a spectral absorption have the most tables.
 TEST(ViewPage, IsSmallEnoughToSend) {
-    for (const char* preset :
-         {"fluorescent-orange-rough", "fluorescent-pigment", "multi-layer", "soap-film"})
+    for (const char* preset : {"fluorescent-orange-rough", "fluorescent-pigment", "multi-layer",
+                               "soap-film", "lepidolite-flake", "fluorescent-varnish-on-white"})
         EXPECT_LT(page_of(viewed_preset(preset)).size(), 1500000u) << preset;
 }
 
@@ -40,10 +40,13 @@ TEST(ViewPage, MaterialsThatOnlyTheWalkDoesAreShownWithANote) {
         EXPECT_NE(viewed.notes.front().find("approximate"), std::string::npos);
     }
     EXPECT_TRUE(viewed_models(viewed_preset("red-lacquer").material).notes.empty());
+    const ViewedModels dyed = viewed_models(viewed_preset("fluorescent-varnish-on-white").material);
+    EXPECT_EQ(dyed.models, std::vector<Model>{Model::Adding});
+    EXPECT_NE(dyed.notes.front().find("nothing of them slides"), std::string::npos);
 }
 
-TEST(ViewPage, DyesInLayersAndSheetsAreRefusedAtTheirPlace) {
-    for (const char* preset : {"fluorescent-varnish-on-white", "red-foil-concentrator"}) {
+TEST(ViewPage, SheetsAreRefusedAtTheirPlace) {
+    for (const char* preset : {"phosphor-sheet", "red-foil-concentrator"}) {
         const Material material = viewed_preset(preset).material;
         EXPECT_FALSE(is_shown_on_pages(material)) << preset;
         try {

@@ -104,6 +104,7 @@ vec3 rr_mirror_colour(float cosine) {
 } // namespace
 
 std::string glsl_file(const ViewedMaterial& viewed, const Lamp& lamp) {
+    require_exchangeable(viewed.material);
     GlslTables tables = glsl_tables(viewed.material);
     add_lamp(tables, lamp);
     LampColours said;

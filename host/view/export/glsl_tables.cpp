@@ -160,6 +160,7 @@ void GlslTablesMaker::add_lobes(const std::vector<LobeShape>& lobes, std::size_t
         passages = std::max(passages, lobe.passages.size());
     define("RR_LOBES", static_cast<int>(lobes.size()));
     define("RR_PASSAGES", static_cast<int>(passages));
+    define("RR_DYE_NODES", 0);
     define("RR_HAS_RATIO", 0);
     define("RR_SPREADS", 0);
     std::vector<LobeShape> padded = lobes;

@@ -115,8 +115,17 @@ void say_what_is_left_out(LampColours& colours, const Material& material) {
 
 } // namespace
 
+void require_exchangeable(const Material& material) {
+    viewed_models(material);
+    if (material.stack.is_dyed())
+        throw_input_error(material.position,
+                          "files for other renderers cannot hold dyes in layers, whose light comes "
+                          "from many depths",
+                          "`view -o PAGE.html`, `render` and `measure` show them");
+}
+
 LampColours lamp_colours(const ViewedMaterial& viewed, const Lamp& lamp) {
-    viewed_models(viewed.material);
+    require_exchangeable(viewed.material);
     const WavelengthGrid bands = measured_bands(viewed.material, {});
     const LampEye eye(bands, lamp);
     LampColours colours;

@@ -34,6 +34,10 @@ struct LampColours {
 /// whose white the observer of 1931 does not see.
 LampColours lamp_colours(const ViewedMaterial& viewed, const Lamp& lamp);
 
+/// Refuses, by an input Error at its place, a material that files for other renderers cannot hold:
+/// one with dyes in its layers, and what no page shows.
+void require_exchangeable(const Material& material);
+
 /// The head of a file in comments: what it is, of which lamp, and what it leaves out.
 std::string exchange_head(const LampColours& colours, const std::string& what,
                           const std::string& comment);

@@ -8,6 +8,7 @@
 struct RrGeometry {
     float cos_i, cos_o, cos_h, top, first, rest;
     float lobes[RR_LOBES + 1];
+    float dyes[RR_DYE_NODES + 1]; // weights of the nodes that light of dyes in layers goes to
 };
 
 float rr_lobe_term(int distribution, float spread) {
@@ -82,6 +83,16 @@ float rr_seen_substrate(vec3 wi, vec3 wo) {
 }
 #endif
 
+// Polynomials that are 1 at one of Chebyshev's nodes each.
+float rr_dye_node(int node) { return 0.51 - 0.49 * cos(RR_PI * (float(node) + 0.5) / float(RR_DYE_NODES)); }
+void rr_dye_weights(inout RrGeometry g) {
+    for (int p = 0; p < RR_DYE_NODES; ++p) {
+        g.dyes[p] = 1.0;
+        for (int q = 0; q < RR_DYE_NODES; ++q)
+            if (q != p) g.dyes[p] *= (g.cos_o - rr_dye_node(q)) / (rr_dye_node(p) - rr_dye_node(q));
+    }
+}
+
 RrGeometry rr_geometry(vec3 wi, vec3 wo, float sin_radius) {
     RrGeometry g;
     vec3 lit = rr_nearest_of_disc(wi, wo, sin_radius);
@@ -105,12 +116,19 @@ RrGeometry rr_geometry(vec3 wi, vec3 wo, float sin_radius) {
     g.first = rr_seen_substrate(wi, wo) - both / mean;
     g.rest = both / (mean * mean);
 #endif
+    rr_dye_weights(g);
     return g;
 }
 
 // Radiance over irradiance at normal incidence `light`, bands of a chunk.
 vec4 rr_chunk(RrGeometry g, int chunk, vec4 light, inout RrSums first, inout RrSums rest) {
     vec4 lit = light * g.cos_i;
+#if RR_DYE_NODES > 0
+    vec4 seen = vec4(0.0);
+    for (int p = 0; p < RR_DYE_NODES; ++p)
+        seen += g.dyes[p] * g.cos_i * rr_table(RR_SENT + p, chunk, g.cos_i);
+    seen *= rr_table(RR_T, chunk, g.cos_o);
+#else
 #if RR_DENSE
     vec4 sent = g.first * g.cos_i * rr_table(RR_SENT, chunk, g.cos_i);
 #if RR_OPERATORS == 2
@@ -124,6 +142,7 @@ vec4 rr_chunk(RrGeometry g, int chunk, vec4 light, inout RrSums first, inout RrS
 #endif
 #endif
     vec4 seen = rr_table(RR_T, chunk, g.cos_o) * RR_BAND(RR_SCALE_ROW, chunk) * sent;
+#endif
     vec4 mirrored = rr_table(RR_RESIDUAL, chunk, g.cos_i) * rr_table(RR_RESIDUAL, chunk, g.cos_o);
     if (g.top > 0.0) mirrored += g.top * rr_fresnel4(g.cos_h, RR_BAND(RR_IOR_ROW, chunk));
     for (int l = 0; l < RR_LOBES; ++l)

@@ -110,7 +110,9 @@ function buildMaterialControls() {
     make(
       'div',
       { className: 'buttons' },
-      make('button', { type: 'button', id: 'copy-toml', textContent: 'Copy as TOML', onclick: copyToml }),
+      ...(material.dyed
+        ? []
+        : [make('button', { type: 'button', id: 'copy-toml', textContent: 'Copy as TOML', onclick: copyToml })]),
       ...(hasDye(material)
         ? [make('button', { type: 'button', id: 'save-matrix', textContent: 'Save its matrix', onclick: saveMatrix })]
         : []),
@@ -121,7 +123,7 @@ function buildMaterialControls() {
         onclick: () => chooseMaterial(view.material),
       }),
     ),
-    fold('toml-text', 'The file as text', make('pre', { id: 'toml' })),
+    ...(material.dyed ? [] : [fold('toml-text', 'The file as text', make('pre', { id: 'toml' }))]),
   );
   place('notes').replaceChildren(...material.notes.map((text) => make('p', { className: 'note', textContent: text })));
   showDivider();

@@ -29,7 +29,7 @@ function refresh() {
     pictures[k] = pictures[k] || new Picture(gl);
     pictures[k].prepare(states[model], lampNow(), aroundNow(), screenRows());
   });
-  place('toml').textContent = materialToml(materialNow(), view.sliders);
+  if (place('toml')) place('toml').textContent = materialToml(materialNow(), view.sliders);
 }
 function drawNow() {
   refresh();

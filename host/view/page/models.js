@@ -131,6 +131,10 @@ function addingState(material, sliders) {
   const full = effective(substrateOperator(material, sliders.dye, mean), r);
   state.operators = sigma > 0 ? [substrateOperator(material, sliders.dye, 1), full] : [full];
   state.orenNayar = sigma > 0 ? grid.orenNayar : null;
+  if (material.dyed) {
+    state.dyed = dyedState(material);
+    state.transmission = state.dyed.through;
+  }
   return state;
 }
 // Weights of the substrate's operators: of the first bounce and of what came back, or of both at once.
@@ -150,6 +154,18 @@ function substrateWeights(state, wi, wo) {
   const both = separable(wi[2]) * separable(wo[2]);
   return [seen - both / state.mean, both / square(state.mean)];
 }
+// What substrate and dyes send out again.
+function bodyRadiance(state, wi, wo, light) {
+  if (state.dyed)
+    return dyedSeen(state.dyed, dyedSent(state.dyed, wi[2], light), wo[2]).map((value) => value * wi[2]);
+  const arrives = light.map((value, b) => value * wi[2] * lookUp(state.transmission[b], wi[2]));
+  const sent = substrateWeights(state, wi, wo).map((weight, p) =>
+    applied(state.operators[p], arrives).map((value) => weight * value),
+  );
+  return light.map(
+    (_, b) => lookUp(state.transmission[b], wo[2]) * state.scale[b] * sent.reduce((sum, one) => sum + one[b], 0),
+  );
+}
 // Radiance towards wo of light with this irradiance at normal incidence, by band.
 function addingRadiance(state, wi, wo, light, lampSine) {
   const lit = nearestOfDisc(wi, wo, lampSine),
@@ -167,30 +183,29 @@ function addingRadiance(state, wi, wo, light, lampSine) {
       (lobe.ratio ? facetRatio(lobe.ratio, lobe.alpha, lit, wo) : 1)
     );
   });
-  const arrives = light.map((value, b) => value * wi[2] * lookUp(state.transmission[b], wi[2]));
-  const sent = substrateWeights(state, wi, wo).map((weight, p) =>
-    applied(state.operators[p], arrives).map((value) => weight * value),
-  );
+  const body = bodyRadiance(state, wi, wo, light);
   return light.map((value, b) => {
     let mirrored = lookUp(state.residual[b], wi[2]) * lookUp(state.residual[b], wo[2]);
     if (top > 0) mirrored += top * fresnel(cosH, state.topIor[b]);
     lobes.forEach((lobe, l) => {
       mirrored += lobe * lookUp(state.amplitudes[l][b], wi[2]) * lookUp(state.amplitudes[l][b], wo[2]);
     });
-    return (
-      lookUp(state.transmission[b], wo[2]) * state.scale[b] * sent.reduce((sum, one) => sum + one[b], 0) +
-      mirrored * value * wi[2]
-    );
+    return body[b] + mirrored * value * wi[2];
   });
 }
 const addingMirror = (state, cosine) => state.delta.map((one) => lookUp(one, cosine));
-// Radiance of the same light from all around.
-function addingAround(state, cosine, radiance) {
+// The same of light from all around, as a function of band and cosine.
+function bodyAround(state, radiance) {
+  if (state.dyed) {
+    const sent = dyedSentAround(state.dyed, radiance);
+    return (band, cosine) => dyedSeenAt(state.dyed, sent, nodeWeights(state.dyed.nodes, cosine), band, cosine);
+  }
   const arrives = radiance.map((value, b) => value * square(state.ior[b]) * (1 - state.r[b]));
   const sent = applied(state.operators.at(-1), arrives);
-  return radiance.map(
-    (value, b) =>
-      value * lookUp(state.albedo[b], cosine) +
-      (lookUp(state.transmission[b], cosine) * sent[b]) / square(state.ior[b]),
-  );
+  return (band, cosine) => (lookUp(state.transmission[band], cosine) * sent[band]) / square(state.ior[band]);
+}
+// Radiance of light from all around.
+function addingAround(state, cosine, radiance) {
+  const body = bodyAround(state, radiance);
+  return radiance.map((value, b) => value * lookUp(state.albedo[b], cosine) + body(b, cosine));
 }

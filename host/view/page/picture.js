@@ -43,7 +43,8 @@ class Picture {
     rows.push(...operatorRows(state.operators));
     const tables = [...layout.tables];
     defines.RR_SENT = tables.length;
-    if (isDense) tables.push(...denseTables(state, lamp));
+    if (state.dyed) tables.push(...dyedTables(state.dyed, lamp));
+    else if (isDense) tables.push(...denseTables(state, lamp));
     defines.RR_AROUND = tables.length;
     this.isAround = around.some((value) => value > 0);
     if (this.isAround) tables.push(aroundTable(state, around));
@@ -51,6 +52,7 @@ class Picture {
       RR_TERMS: state.operators[0].emission.length,
       RR_OPERATORS: state.operators.length,
       RR_DENSE: Number(isDense),
+      RR_DYE_NODES: state.dyed ? state.dyed.nodes.length : 0,
     });
     this.uniforms = layout.uniforms;
     this.program = this.programOf(state.model, defines, layout.uniforms);

@@ -31,12 +31,12 @@ function materialNow() {
   if (!material.weights.byteLength) unpackMaterial(material);
   return material;
 }
-const isRoughnessFree = (material) => material['weidlich-wilkie'].alphas.length > 1;
+const isRoughnessFree = (material) => material.models.every((model) => material[model].alphas.length > 1);
 const ownAlpha = (material) => (material.layers[0] || material.substrate).alpha || 0;
-const hasDye = (material) => Boolean(material.substrate.reradiation);
+const hasDye = (material) => Boolean(material.substrate.reradiation) && !material.dyed;
 // Thickness and absorption slide where every model on the page can follow them.
 const canDeepen = (material) =>
-  material['weidlich-wilkie'].absorbs && (!material.adding || material.adding.nodes.length > 1);
+  material.models.every((model) => material[model].absorbs && (model !== 'adding' || material[model].nodes.length > 1));
 function resetSliders() {
   view.sliders = { alpha: ownAlpha(materialNow()), thickness: 1, absorption: 1, dye: 1 };
 }

@@ -28,6 +28,8 @@ function unpackMaterial(material) {
   for (const key of ['emission', 'excitation', 'dense'])
     if (shifted && shifted[key]) shifted[key] = decode(shifted[key], Float32Array);
   for (const model of material.models) unpackGrid(material[model]);
+  for (const key of ['numbers', 'through'])
+    if (material.dyed) material.dyed[key] = decode(material.dyed[key], Float32Array);
   material.weights = decode(material.weights, Float32Array);
   return material;
 }
