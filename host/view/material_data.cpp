@@ -198,6 +198,8 @@ ViewedModels viewed_models(const Material& material) {
     else
         viewed.models.push_back(Model::Adding);
     viewed.models.push_back(Model::WeidlichWilkie);
+    if (material.model == Model::Walk)
+        viewed.notes.push_back("Its file asks for the model walk, which no page shows.");
     if (material.model == Model::WeidlichWilkie)
         std::reverse(viewed.models.begin(), viewed.models.end());
     return viewed;

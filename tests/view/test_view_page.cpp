@@ -45,6 +45,15 @@ TEST(ViewPage, MaterialsThatOnlyTheWalkDoesAreShownWithANote) {
     EXPECT_NE(dyed.notes.front().find("nothing of them slides"), std::string::npos);
 }
 
+TEST(ViewPage, ModelThatTheFileNamesIsTheOneThatThePageBeginsWith) {
+    Material material = viewed_preset("red-lacquer").material;
+    material.model = Model::WeidlichWilkie;
+    EXPECT_EQ(viewed_models(material).models.front(), Model::WeidlichWilkie);
+    material.model = Model::Walk;
+    EXPECT_EQ(viewed_models(material).models.front(), Model::Adding);
+    EXPECT_EQ(viewed_models(material).notes.size(), 1u);
+}
+
 TEST(ViewPage, SheetsAreRefusedAtTheirPlace) {
     for (const char* preset : {"phosphor-sheet", "red-foil-concentrator"}) {
         const Material material = viewed_preset(preset).material;
