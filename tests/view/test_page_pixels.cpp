@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 namespace reradiant {
@@ -108,7 +109,9 @@ private:
 class PagePixels : public ShownPage {
 protected:
     PageErrors errors_of(const std::string& preset, Model model) const {
-        const ViewedMaterial viewed = viewed_preset(preset);
+        return errors_of(viewed_preset(preset), model);
+    }
+    PageErrors errors_of(const ViewedMaterial& viewed, Model model) const {
         std::string asked = filled(steps, "MODEL", fmt::format("'{}'", model_name(model)));
         asked = filled(asked, "LAMPS", "['D65', 'A', 'L:365:10']");
         asked = filled(asked, "COUNT", std::to_string(pixels));
@@ -124,7 +127,7 @@ protected:
                                   light.data(), static_cast<Eigen::Index>(light.size())),
                               errors);
         }
-        fmt::print("{} {}: radiance {:.2e}, CIEDE2000 {:.2e}, drawn {:.2f} codes\n", preset,
+        fmt::print("{} {}: radiance {:.2e}, CIEDE2000 {:.2e}, drawn {:.2f} codes\n", viewed.name,
                    model_name(model), errors.radiance, errors.ciede2000, errors.drawn);
         return errors;
     }
@@ -174,6 +177,48 @@ TEST_F(PagePixels, OtherMaterialsAreThoseOfMeasureToo) {
     for (const char* preset : {"metallic-flake-paint", "pearlescent-paint", "patina", "multi-layer",
                                "car-paint", "house-paint"})
         EXPECT_LT(errors_of(preset, Model::WeidlichWilkie).radiance, 0.001) << preset;
+}
+
+// Dispersion, every distribution, single scattering, clouds, Oren-Nayar over dyes of the substrate,
+// a matrix that no few terms hold.
+TEST_F(PagePixels, UnusualMaterialsAreThoseOfMeasure) {
+    const std::string dispersive = "ior = { nm = [300, 780], value = [1.58, 1.49] }\n";
+    const std::string orange = "reradiation = { file = \"synthetic-orange.csv\" }\n";
+    const std::string up = "reradiation = { file = \"up.csv\" }\n";
+    const std::string few = "reradiation = { file = \"up-and-down.csv\" }\n";
+    const std::string layer = "[material]\n[[material.layer]]\n";
+    const std::string lambert = "[material.substrate]\ntype = \"lambert\"\n";
+    std::ofstream(folder / "up-and-down.csv")
+        << "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
+           "# anti-stokes: allowed\nnm,400,450,500,550,600\n400,0.3,0.1,0,0,0\n"
+           "450,0.2,0.3,0.05,0,0\n500,0.1,0.2,0.4,0.1,0\n550,0.1,0.1,0.2,0.5,0.1\n"
+           "600,0,0.1,0.1,0.2,0.6\n";
+    std::ofstream(folder / "up.csv")
+        << "# reradiation\n# quantity: per-band\n# orientation: rows-emission\n"
+           "nm,400,450,500,550,600\n400,0.3,0,0,0,0\n450,0.2,0.3,0,0,0\n500,0.1,0.2,0.4,0,0\n"
+           "550,0.1,0.1,0.2,0.5,0\n600,0,0.1,0.1,0.2,0.6\n";
+    const std::pair<std::string, std::string> materials[] = {
+        {"dispersive", layer + dispersive +
+                           "alpha = 0.15\ndistribution = \"beckmann\"\nthickness = 0.4\n"
+                           "absorption = { nm = [300, 500, 780], value = [2, 0.5, 0.1] }\n"
+                           "[[material.layer]]\nior = 1.4\n" +
+                           lambert + up},
+        {"oren-nayar", layer + "ior = 1.5\nalpha = 0.3\nscattering = \"single\"\n" +
+                           "[material.substrate]\ntype = \"oren-nayar\"\nsigma = 0.4\n" + orange},
+        {"dense", layer + "ior = 1.5\n" + lambert + few},
+        {"clouds", layer + "ior = 1.5\nscattering_coefficient = 0.7\nanisotropy = 0.4\n" + lambert +
+                       "reflectance = 0.3\n"},
+    };
+    for (const auto& [name, text] : materials) {
+        std::ofstream(folder / (name + ".toml")) << text;
+        const ViewedMaterial viewed{name, load_material(folder / (name + ".toml"))};
+        const PageErrors adding = errors_of(viewed, Model::Adding);
+        EXPECT_LT(adding.radiance, 0.01) << name;
+        EXPECT_LT(adding.drawn, 1.5) << name;
+        const PageErrors closed = errors_of(viewed, Model::WeidlichWilkie);
+        EXPECT_LT(closed.radiance, 0.001) << name;
+        EXPECT_LT(closed.drawn, 1.5) << name;
+    }
 }
 
 } // namespace reradiant

@@ -65,7 +65,8 @@ vec3 rr_shade(vec3 wi, vec3 wo) {
             for (int lane = 0; lane < 4; ++lane) {
                 vec4 one = vec4(equal(ivec4(0, 1, 2, 3), ivec4(lane)));
                 RrGeometry g = rr_geometry_of_band(from, wo, rr_lamp_sine, chunk, lane);
-                radiance += one * rr_chunk(g, chunk, lamp, first, rest);
+                // a band at a time, so that the running sums grow by its light alone
+                radiance += one * rr_chunk(g, chunk, one * lamp, first, rest);
             }
 #else
             radiance = rr_chunk(g, chunk, lamp, first, rest);

@@ -3,6 +3,7 @@
 #include "host/scene/model/closed_model.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace reradiant {
@@ -16,6 +17,8 @@ constexpr double slider_alphas[] = {0.0, 0.05, 0.1, 0.2, 0.35, 0.6};
 constexpr double slab_depths[] = {0.0, 0.0625, 0.125, 0.25, 0.375, 0.5, 0.75, 1.0,
                                   1.5, 2.0,    3.0,   4.0,  6.0,   8.0, 12.0, 16.0};
 constexpr double factor_depths[] = {0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0};
+/// Ranks among the bands' depths that have tables too.
+constexpr std::size_t own_depths = 8;
 /// More variants than this would make the page large and its making slow.
 constexpr std::size_t most_variants = 600;
 
@@ -62,6 +65,25 @@ VariantGrid fixed_depths(const std::vector<StackElements>& stacks, bool absorbs)
     return grid;
 }
 
+/// Depths that are tabulated: those of the slider, and some of the bands' own, so that the material
+/// as it is lies close to them.
+std::vector<double> depth_nodes(std::vector<double> own, bool with_sliders) {
+    std::sort(own.begin(), own.end());
+    const double largest = own.back();
+    std::vector<double> nodes;
+    for (const double depth : slab_depths)
+        if (with_sliders || depth <= 1.0)
+            nodes.push_back(depth * largest);
+    for (std::size_t k = 1; k < own_depths; ++k) {
+        const double depth = own[k * (own.size() - 1) / own_depths];
+        if (std::none_of(nodes.begin(), nodes.end(),
+                         [&](double node) { return std::fabs(node - depth) < 0.02 * largest; }))
+            nodes.push_back(depth);
+    }
+    std::sort(nodes.begin(), nodes.end());
+    return nodes;
+}
+
 /// Classes that sliders of thickness and absorption move along: by the depth of the one slab that
 /// absorbs, else by a factor on all depths. Up to the depth that there is, without sliders.
 VariantGrid moving_depths(std::vector<StackElements> stacks,
@@ -74,10 +96,7 @@ VariantGrid moving_depths(std::vector<StackElements> stacks,
     } else {
         for (std::size_t band = 0; band < stacks.size(); ++band)
             grid.depths[band] = std::exchange(slab_at(stacks[band], absorbing.front())->tau, 1.0);
-        const double largest = *std::max_element(grid.depths.begin(), grid.depths.end());
-        for (const double depth : slab_depths)
-            if (with_sliders || depth <= 1.0)
-                grid.nodes.push_back(depth * largest);
+        grid.nodes = depth_nodes(grid.depths, with_sliders);
     }
     add_classes(grid, stacks);
     return grid;
@@ -137,12 +156,15 @@ VariantGrid variant_grid(const Material& material, const WavelengthGrid& bands,
     const std::vector<std::size_t> absorbing = absorbing_slabs(stacks);
     // where clouds scatter, depth is more than absorption: such a stack stays as thick as it is
     const bool may_move = request.with_sliders && !material.stack.scatters();
+    // a rough interface takes its operator a second, and a dispersive one has one at every band
+    const bool may_roughen = request.with_sliders && !material.stack.is_dispersive();
     struct Moves {
         bool depth, alpha;
     };
     VariantGrid grid;
-    for (const auto [depth, alpha] : {Moves{true, true}, {false, true}, {false, false}}) {
-        if ((depth && !may_move) || (alpha && !request.with_sliders))
+    for (const auto [depth, alpha] :
+         {Moves{true, true}, {true, false}, {false, true}, {false, false}}) {
+        if ((depth && !may_move) || (alpha && !may_roughen))
             continue;
         grid = material.stack.scatters() ? fixed_depths(stacks, !absorbing.empty())
                                          : chosen_depths(stacks, absorbing, depth);
