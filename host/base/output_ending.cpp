@@ -13,11 +13,11 @@ namespace reradiant {
 namespace {
 
 constexpr std::array format_endings = {
-    ".exr",  ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr",  ".pfm",  ".gif",
-    ".webp", ".bmp", ".tga", ".ppm",  ".svg", ".pdf",  ".html", ".htm",  ".md",
-    ".csv",  ".tsv", ".txt", ".dat",  ".xls", ".xlsx", ".ods",  ".json", ".toml",
-    ".yaml", ".yml", ".xml", ".spdx", ".spd", ".bfc",  ".jdx",  ".ply",  ".obj",
-    ".ocio", ".npy", ".npz", ".mat",  ".h5",  ".zip",  ".py",   ".osl",  ".glsl"};
+    ".exr",  ".png", ".jpg", ".jpeg", ".tif",  ".tiff", ".hdr",  ".pfm",  ".gif", ".webp",
+    ".bmp",  ".tga", ".ppm", ".svg",  ".pdf",  ".html", ".htm",  ".md",   ".csv", ".tsv",
+    ".txt",  ".dat", ".xls", ".xlsx", ".ods",  ".json", ".toml", ".yaml", ".yml", ".xml",
+    ".spdx", ".spd", ".bfc", ".jdx",  ".ply",  ".obj",  ".ocio", ".npy",  ".npz", ".mat",
+    ".h5",   ".zip", ".py",  ".osl",  ".glsl", ".mtlx"};
 
 template <typename List>
 bool holds(const List& list, const std::string& text) {

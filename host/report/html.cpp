@@ -1,5 +1,7 @@
 #include "host/report/html.h"
 
+#include "host/report/page_parts.h"
+
 #include <fmt/core.h>
 
 #include <cstdlib>
@@ -7,18 +9,6 @@
 namespace reradiant {
 
 namespace {
-
-constexpr const char* style =
-    "body{font:16px/1.45 Helvetica,Arial,sans-serif;color:#222;background:#fff;"
-    "max-width:72em;margin:2em auto;padding:0 1em}\n"
-    "h1{font-size:1.6em}h2{font-size:1.2em;margin-top:2em;border-bottom:1px solid #ccc}\n"
-    "table{border-collapse:collapse;margin:1em 0;display:block;overflow-x:auto}\n"
-    "th,td{padding:.25em .8em;border-bottom:1px solid #ddd;text-align:left}\n"
-    "th{border-bottom:2px solid #888}td.number{text-align:right;white-space:nowrap;"
-    "font-variant-numeric:tabular-nums}\n"
-    "figure{display:inline-block;margin:1em 1em 1em 0;vertical-align:top}\n"
-    "figure svg{max-width:100%;height:auto}\n"
-    "figcaption{font-size:.9em;color:#555;max-width:42em}\n";
 
 /// True for text that begins as a number does; "0.91 (0.90 to 0.92)" is one to readers.
 bool is_number(const std::string& text) {
@@ -83,12 +73,7 @@ void HtmlPage::figure(const std::string& svg, const std::string& caption) {
 }
 
 std::string HtmlPage::text() const {
-    const std::string title = markup_escaped(title_);
-    return fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\n"
-                       "<meta name=\"viewport\" content=\"width=device-width\"/>\n"
-                       "<title>{0}</title>\n<style>\n{1}</style></head>\n<body>\n<h1>{0}</h1>\n"
-                       "{2}</body></html>\n",
-                       title, style, body_);
+    return html_document(title_, std::string(page_style) + report_style, body_);
 }
 
 } // namespace reradiant

@@ -5,9 +5,9 @@
 
 namespace reradiant {
 
-/// A report as one self-contained HTML file: no script, no network, readable in light and on
-/// paper, and well-formed XML too. Text is escaped; figures are SVG elements as host/report/svg.h
-/// makes them.
+/// A report as one self-contained HTML file: no script, no network, readable in light, in the dark
+/// and on paper, and well-formed XML too. Text is escaped; figures are SVG elements as
+/// host/report/svg.h makes them.
 class HtmlPage {
 public:
     explicit HtmlPage(std::string title);

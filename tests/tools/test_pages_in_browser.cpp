@@ -1,7 +1,6 @@
 // The pages of `study`, `converge` and `colour` in headless Chromium, used as a reader uses them.
+#include "tests/support/page_browser.h"
 #include "tests/tools/program_runner.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cstdio>
 
@@ -9,58 +8,16 @@ namespace reradiant {
 
 namespace {
 
-/// Runs before the page's own script: what goes wrong there is kept.
-constexpr const char* watch = "<script>window.faults = [];"
-                              "addEventListener('error', (e) => faults.push(String(e.message)));"
-                              "</script>";
-
-/// This script adds to `outcome` what every page must say of itself: faults, resources from
-/// elsewhere, pictures that are broken.
-constexpr const char* report = R"js(
-  outcome.faults = faults;
-  outcome.fetched = performance.getEntriesByType('resource').map((e) => e.name)
-    .filter((name) => !name.startsWith('data:'));
-  outcome.broken = [...document.images].filter((i) => !i.complete || i.naturalWidth === 0).length;
-  outcome.pictures = document.images.length;
-  const text = document.createElement('pre');
-  text.id = 'outcome';
-  text.textContent = JSON.stringify(outcome);
-  document.body.replaceChildren(text);
-)js";
-
 class PagesInBrowser : public ProgramTest {
 protected:
     void SetUp() override {
-        for (const char* name : {"chromium-headless-shell", "chromium", "chromium-browser"})
-            if (std::system(("command -v " + std::string(name) + " >/dev/null").c_str()) == 0)
-                browser_ = name;
-        if (browser_.empty())
-            GTEST_SKIP() << "no Chromium here: pages are not tested in a browser";
+        if (!browser_.is_there())
+            GTEST_SKIP() << PageBrowser::missing;
         put("scene.toml", small_scene());
     }
 
-    /// Opens a page, runs `steps` (which fill `outcome`) when it is loaded, and returns the
-    /// outcome.
     nlohmann::json opened(const std::string& page, const std::string& steps) const {
-        std::string html = file_bytes(folder / page);
-        html.insert(html.find("<head>") + 6, watch);
-        html.insert(html.rfind("</body>"),
-                    "<script>addEventListener('load', () => { const outcome = {};\n" + steps +
-                        report + "});</script>");
-        put("opened.html", html);
-        const std::string command = browser_ +
-                                    " --headless --no-sandbox --disable-gpu --window-size=1200,900 "
-                                    "--virtual-time-budget=10000 --dump-dom 'file://" +
-                                    (folder / "opened.html").string() + "' 2>/dev/null >'" +
-                                    (folder / "dom.html").string() + "'";
-        EXPECT_EQ(std::system(command.c_str()), 0) << command;
-        const std::string dom = file_bytes(folder / "dom.html"), mark = "<pre id=\"outcome\">";
-        const std::size_t begin = dom.find(mark), end = dom.find("</pre>", begin);
-        if (begin == std::string::npos || end == std::string::npos) {
-            ADD_FAILURE() << "the page said nothing:\n" << dom.substr(0, 2000);
-            return {};
-        }
-        return nlohmann::json::parse(dom.substr(begin + mark.size(), end - begin - mark.size()));
+        return browser_.opened(folder / "", file_bytes(folder / page), steps);
     }
 
     static void expect_sound(const nlohmann::json& outcome, int pictures) {
@@ -70,7 +27,7 @@ protected:
         EXPECT_GE(outcome.at("pictures"), pictures);
     }
 
-    std::string browser_;
+    PageBrowser browser_;
 };
 
 } // namespace

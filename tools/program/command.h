@@ -45,6 +45,7 @@ void add_convert_command(Program& program, CommandContext& context);
 void add_compare_command(Program& program, CommandContext& context);
 void add_converge_command(Program& program, CommandContext& context);
 void add_study_command(Program& program, CommandContext& context);
+void add_view_command(Program& program, CommandContext& context);
 void add_merge_command(Program& program, CommandContext& context);
 void add_synth_command(Program& program, CommandContext& context);
 void add_colour_command(Program& program, CommandContext& context);

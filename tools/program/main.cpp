@@ -29,6 +29,7 @@ void add_commands(Program& program, CommandContext& context) {
     add_compare_command(program, context);
     add_converge_command(program, context);
     add_study_command(program, context);
+    add_view_command(program, context);
     add_merge_command(program, context);
     add_validate_command(program, context);
     add_info_command(program, context);

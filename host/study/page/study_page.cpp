@@ -2,7 +2,7 @@
 
 #include "host/report/colour_map.h"
 #include "host/report/data_uri.h"
-#include "host/report/html.h"
+#include "host/report/page_parts.h"
 #include "host/study/page/contact_sheet.h"
 #include "host/study/study/study_store.h"
 
@@ -126,16 +126,6 @@ Json study_json(const Study& study, const StudyResult& result) {
     return json;
 }
 
-/// JSON inside a script element: no text of it may close the element.
-std::string script_safe(const Json& json) {
-    constexpr auto on_bad_utf8 = Json::error_handler_t::replace;
-    const std::string text = json.dump(-1, ' ', true, on_bad_utf8);
-    std::string safe;
-    for (const char character : text)
-        safe += character == '<' ? std::string("\\u003c") : std::string(1, character);
-    return safe;
-}
-
 /// The exposure that makes the pictures comparable, and the unit that lengths have.
 std::string sheet_notes(const Study& study, const StudyResult& result) {
     std::string notes;
@@ -158,20 +148,17 @@ std::string sheet_notes(const Study& study, const StudyResult& result) {
 } // namespace
 
 std::string study_page(const Study& study, const StudyResult& result) {
-    return fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width\">\n<title>{0}</title>\n"
-        "<style>\n{1}</style></head>\n<body>\n<h1>{0}</h1>\n"
+    return html_document(
+        study.title, std::string(page_style) + study_style,
         "<p>Pick cells; drag along the wavelength, in a spectrum too, or along the excitation; "
-        "read values under the pointer.</p>\n{4}"
-        "<noscript><p>This page needs scripts; table.csv and the folder cells hold the same "
-        "results.</p></noscript>\n"
-        "<section id=\"sheet\"></section>\n<section id=\"controls\"></section>\n"
-        "<section id=\"panels\"></section>\n"
-        "<script type=\"application/json\" id=\"study-data\">{2}</script>\n"
-        "<script>\n{3}</script>\n</body></html>\n",
-        markup_escaped(study.title), study_style, script_safe(study_json(study, result)),
-        study_script, sheet_notes(study, result));
+        "read values under the pointer.</p>\n" +
+            sheet_notes(study, result) +
+            "<noscript><p>This page needs scripts; table.csv and the folder cells hold the same "
+            "results.</p></noscript>\n"
+            "<section id=\"sheet\"></section>\n<section id=\"controls\"></section>\n"
+            "<section id=\"panels\"></section>\n" +
+            script_data("study-data", study_json(study, result)) + "<script>\n" + page_script +
+            study_script + "</script>\n");
 }
 
 } // namespace reradiant

@@ -1,53 +1,6 @@
-#include "host/study/page/study_page.h"
-
-namespace reradiant {
-
-const char* const study_style = R"css(
-body{font:15px/1.4 Helvetica,Arial,sans-serif;color:#222;background:#fff;margin:1.5em}
-h1{font-size:1.5em;margin:.2em 0}
-#sheet{overflow:auto;max-height:60vh;border:1px solid #ccc}
-#sheet table{border-collapse:collapse}
-#sheet th{font-weight:normal;font-size:.85em;padding:.2em .5em;text-align:center;background:#fff}
-#sheet td{padding:2px}
-#sheet button{display:block;padding:0;border:3px solid transparent;background:#eee;cursor:pointer;
-  min-width:64px;min-height:40px;font-size:.8em}
-#sheet button.chosen{border-color:#d55e00}
-#sheet button.failed{background:#fdd;color:#900}
-#sheet img{display:block;width:84px;image-rendering:pixelated}
-#controls{display:flex;flex-wrap:wrap;gap:1.5em;margin:1em 0;position:sticky;top:0;background:#fff;
-  padding:.5em 0;border-bottom:1px solid #ccc;z-index:1}
-#controls input[type=range]{width:24em;max-width:70vw;vertical-align:middle}
-#panels{display:flex;flex-wrap:wrap;gap:1.5em}
-.panel{border:1px solid #ccc;padding:.8em;width:460px;max-width:90vw}
-.panel h2{font-size:1em;margin:0 0 .5em}
-.panel canvas{display:block;width:100%;touch-action:none;cursor:crosshair}
-.panel canvas.image{image-rendering:pixelated;background:#000;width:75%}
-.panel svg{max-width:100%;height:auto}
-.panel table{display:block;overflow-x:auto;border-collapse:collapse;font-size:.78em}
-.panel th,.panel td{padding:.1em .5em;text-align:right;border-bottom:1px solid #ddd}
-.caption{font-size:.85em;color:#555;margin:.6em 0 .1em}
-.value{font-size:.9em;min-height:1.4em;font-variant-numeric:tabular-nums}
-.error{color:#900}
-)css";
-
-/// Plain script. State is one object; every change redraws the chosen cells.
-const char* const study_script = R"js('use strict';
+// The page of a study. State is one object; every change redraws the chosen cells.
 const study = JSON.parse(document.getElementById('study-data').textContent);
 const state = { chosen: [], nm: 550, excitation: 400, single: false };
-
-function decode(text, Type) {
-  const raw = atob(text), bytes = new Uint8Array(raw.length);
-  for (let i = 0; i < raw.length; ++i) bytes[i] = raw.charCodeAt(i);
-  return new Type(bytes.buffer);
-}
-function make(tag, properties, ...children) {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-}
-const number = (v) => v === null || !isFinite(v) ? '-' : Number(v).toPrecision(4);
-const clamp = (v, low, high) => Math.min(high, Math.max(low, v));
-const bandAt = (grid, nm) => clamp(Math.round((nm - grid.from) / grid.step), 0, grid.count - 1);
 
 // What is encoded is unpacked once.
 for (const cell of study.cells) {
@@ -130,60 +83,23 @@ function buildControls() {
   }
 }
 
-// A line chart: series of { from, step, values, colour } over nm. Dragging moves `key`.
-const colours = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9'];
-const edge = { left: 52, right: 8, top: 8, bottom: 22 };
+// A line chart of series over nm, read under the pointer. Dragging moves `key`.
 function chart(panel, caption, key, series) {
   const canvas = make('canvas', { width: 800, height: 300 }), value = make('div', { className: 'value' });
   panel.append(make('div', { className: 'caption', textContent: caption }), canvas, value);
   let pointer = null;
-  const range = () => {
-    const s = series(), low = Math.min(...s.map((o) => o.from));
-    return { s, low, high: Math.max(...s.map((o) => o.from + (o.values.length - 1) * o.step)),
-      top: Math.max(1e-30, ...s.flatMap((o) => o.values.filter((v) => v !== null && isFinite(v)))) };
-  };
-  const width = 800 - 2 * edge.left - 2 * edge.right, height = 300 - 2 * edge.top - 2 * edge.bottom;
-  const nmAt = (event) => {
-    const r = range(), box = canvas.getBoundingClientRect();
-    const x = (event.clientX - box.left) * 800 / box.width;
-    return clamp(r.low + (x - 2 * edge.left) / width * (r.high - r.low), r.low, r.high);
-  };
   canvas.onpointermove = canvas.onpointerdown = (event) => {
-    pointer = nmAt(event);
+    const s = series(), grid = s[0];
+    pointer = chartNm(canvas, s, event);
     if (event.buttons & 1) {
-      const grid = range().s[0];
       state[key] = grid.from + Math.round((pointer - grid.from) / grid.step) * grid.step;
       redraw();
     } else draw();
   };
   canvas.onpointerleave = () => { pointer = null; draw(); };
   function draw() {
-    const { s, low, high, top } = range(), g = canvas.getContext('2d');
-    const x = (nm) => 2 * edge.left + (nm - low) / (high - low || 1) * width;
-    const y = (v) => 2 * edge.top + height * (1 - v / top);
-    g.clearRect(0, 0, 800, 300);
-    g.font = '20px sans-serif'; g.fillStyle = '#555'; g.strokeStyle = '#ddd'; g.lineWidth = 1;
-    for (let nm = Math.ceil(low / 100) * 100; nm <= high; nm += 100) {
-      g.beginPath(); g.moveTo(x(nm), y(0)); g.lineTo(x(nm), y(top)); g.stroke();
-      g.textAlign = 'center'; g.fillText(nm, x(nm), 294);
-    }
-    g.textAlign = 'right';
-    for (const share of [0, 0.5, 1]) {
-      g.beginPath(); g.moveTo(x(low), y(share * top)); g.lineTo(x(high), y(share * top)); g.stroke();
-      g.fillText((share * top).toPrecision(2), 2 * edge.left - 6, y(share * top) + 7);
-    }
-    s.forEach((one, index) => {
-      g.strokeStyle = colours[index % colours.length]; g.lineWidth = 3; g.beginPath();
-      let down = false;
-      one.values.forEach((v, i) => {
-        if (v === null || !isFinite(v)) { down = false; return; }
-        g[down ? 'lineTo' : 'moveTo'](x(one.from + i * one.step), y(v)); down = true;
-      });
-      g.stroke();
-    });
-    g.strokeStyle = '#222'; g.lineWidth = 1; g.beginPath();
-    g.moveTo(x(state[key]), y(0)); g.lineTo(x(state[key]), y(top)); g.stroke();
-    const nm = pointer === null ? state[key] : pointer;
+    const s = series(), nm = pointer === null ? state[key] : pointer;
+    drawChart(canvas, s, state[key]);
     value.textContent = s.map((one) => {
       const i = clamp(Math.round((nm - one.from) / one.step), 0, one.values.length - 1);
       return one.label + ' ' + number(one.values[i]) + ' at ' + (one.from + i * one.step) + ' nm';
@@ -325,6 +241,3 @@ buildSheet();
 buildControls();
 state.chosen = study.cells.filter((c) => !c.error).slice(0, 1).map((c) => c.index);
 choose();
-)js";
-
-} // namespace reradiant
