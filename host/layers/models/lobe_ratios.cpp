@@ -125,6 +125,11 @@ std::vector<double> compute_ratios(const LobeShape& lobe, const AimedLobeWalk& a
                                           static_cast<std::ptrdiff_t>(i * slopes * azimuths));
             });
     });
+    // 1 where the lobe is highest at normal incidence: tables of media with other indices of
+    // refraction then differ in shape alone
+    const double highest = table[(LOBE_RATIO_COSINES - 1) * slopes * azimuths];
+    for (double& ratio : table)
+        ratio /= highest > 0.0 ? highest : 1.0;
     return table;
 }
 

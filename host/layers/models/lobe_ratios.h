@@ -18,9 +18,9 @@ using AimedLobeWalk =
     std::function<LobeWalk(const kernels::Vec3& own, std::span<const kernels::Vec3> others)>;
 
 /// Returns the table of kernels/scatter/lobe_ratio.h (LOBE_RATIO_SIZE, unit 1): means over walks
-/// divided by the lobe of facets, `plain`, whose own table is not looked at. `key` says what the
-/// walk depends on: tables are kept under it in memory and in the disk cache
-/// (cache_directory()/interfaces). Thread-safe.
+/// divided by the lobe of facets, `plain`, whose own table is not looked at, and 1 from the normal
+/// to the normal. `key` says what the walk depends on: tables are kept under it in memory and in
+/// the disk cache (cache_directory()/interfaces). Thread-safe.
 std::shared_ptr<const std::vector<float>>
 lobe_ratios(const LobeShape& plain, const AimedLobeWalk& aimed, const std::vector<double>& key);
 

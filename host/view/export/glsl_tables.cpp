@@ -107,12 +107,15 @@ void GlslTablesMaker::add_adding() {
     // the light of several facets, whose shape is a table of thousands of numbers, joins the
     // residual
     std::vector<LobeShape> lobes = models_[bands() / 2]->deeper_lobes();
-    const std::size_t first = !lobes.empty() && lobes.front().table ? 1 : 0;
+    const std::size_t first = !lobes.empty() && lobes.front().is_between_facets() ? 1 : 0;
     const CosineTable several = first == 1 ? lobe_albedo(lobes.front()) : CosineTable();
     lobes.erase(lobes.begin(), lobes.begin() + static_cast<std::ptrdiff_t>(first));
     if (first == 1)
         out_.left_out.push_back("The direction of light that met several facets of the first "
                                 "interface; its amount is there.");
+    if (std::ranges::any_of(lobes, [](const LobeShape& lobe) { return lobe.table != nullptr; }))
+        out_.left_out.push_back("The directions of light from beneath rough interfaces are those "
+                                "of a lobe of facets; its amount is there.");
     if (material_.substrate.type == SubstrateType::OrenNayar && !material_.stack.layers.empty())
         out_.left_out.push_back("The substrate beneath the layers is Lambertian instead of Oren "
                                 "and Nayar's.");
@@ -146,15 +149,25 @@ void GlslTablesMaker::add_residual(const CosineTable& several) {
     });
 }
 
+/// Amplitude of a deeper interface's lobe without the table that it is multiplied by, which is too
+/// large for constants, for the same flux; dark where a band has no such lobe.
+CosineTable plain_amplitude(const StackBsdf& model, std::size_t lobe) {
+    if (lobe >= model.deeper_lobes().size())
+        return {};
+    LobeShape plain = model.deeper_lobes()[lobe];
+    plain.table = nullptr;
+    return fit_lobe(plain, [&](double c) { return model.lobe_shares(c)[lobe + 1]; }).amplitude;
+}
+
 /// Lobes of deeper interfaces, the model's from `first` on. Arrays of GLSL are never empty: a dark
 /// one ends them.
 void GlslTablesMaker::add_lobes(const std::vector<LobeShape>& lobes, std::size_t first) {
-    for (std::size_t lobe = first; lobe < lobes.size() + first; ++lobe)
-        add_table([&](std::size_t b, double c) {
-            return lobe < models_[b]->deeper_lobes().size()
-                       ? models_[b]->lobe_amplitude(static_cast<int>(lobe), c)
-                       : 0.0;
-        });
+    for (std::size_t lobe = first; lobe < lobes.size() + first; ++lobe) {
+        std::vector<CosineTable> amplitudes;
+        for (std::size_t b = 0; b < bands(); ++b)
+            amplitudes.push_back(plain_amplitude(*models_[b], lobe));
+        add_table([&](std::size_t b, double c) { return amplitudes[b](c); });
+    }
     std::size_t passages = 1;
     for (const LobeShape& lobe : lobes)
         passages = std::max(passages, lobe.passages.size());
@@ -162,6 +175,7 @@ void GlslTablesMaker::add_lobes(const std::vector<LobeShape>& lobes, std::size_t
     define("RR_PASSAGES", static_cast<int>(passages));
     define("RR_DYE_NODES", 0);
     define("RR_HAS_RATIO", 0);
+    define("RR_HAS_RETURNED", 0);
     define("RR_SPREADS", 0);
     std::vector<LobeShape> padded = lobes;
     padded.push_back({Distribution::Ggx, 1.0});

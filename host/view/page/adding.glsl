@@ -57,6 +57,34 @@ float rr_ratio(float alpha, vec3 wi, vec3 wo) {
 }
 #endif
 
+#if RR_HAS_RETURNED
+// Ratio of the light that comes back from a deeper interface to its lobe, from the first of two directions:
+// linear in a table of 32 cosines, 28 slopes of the half vector and 9 azimuths.
+float rr_azimuth_place(float cosine) {
+    float x = min(abs(cosine), 1.0);
+    float angle = sqrt(1.0 - x) * (1.5707288 + x * (-0.2121144 + x * (0.0742610 - x * 0.0187293)));
+    return (cosine < 0.0 ? RR_PI - angle : angle) * (8.0 / RR_PI);
+}
+float rr_returned_from(int lobe, vec3 own, vec3 other) {
+    vec3 sum = own + other;
+    float across = dot(sum.xy, sum.xy), largest = (1.0 + sqrt(max(1.0 - own.z * own.z, 0.0))) / max(own.z, 0.01);
+    float u = min(sqrt(across) / max(sum.z, 1e-15) / largest, 1.0), k = 8.0 * rr_lobe_returned[lobe] / largest;
+    float along = dot(own.xy, sum.xy) / sqrt(max(across * dot(own.xy, own.xy), 1e-30));
+    vec3 place = vec3(clamp((sqrt(max(own.z, 0.0)) - 0.1) * (31.0 / 0.9), 0.0, 31.0),
+                      u * (1.0 + k) / (u + k) * 27.0, rr_azimuth_place(along));
+    ivec3 at = clamp(ivec3(place), ivec3(0), ivec3(30, 26, 7));
+    vec3 t = place - vec3(at);
+    float value = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        ivec3 step = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        vec3 weight = mix(1.0 - t, t, vec3(step));
+        value += weight.x * weight.y * weight.z *
+            RR_RETURNED((lobe * 32 + at.x + step.x) * 28 + at.y + step.y, at.z + step.z);
+    }
+    return value;
+}
+#endif
+
 #if RR_OPERATORS == 2
 float rr_oren_nayar_place(float cosine) { return sqrt(max(1.0 - cosine, 0.0)) * 15.0; }
 float rr_separable_albedo(float cosine) {
@@ -107,6 +135,9 @@ RrGeometry rr_geometry(vec3 wi, vec3 wo, float sin_radius) {
         g.lobes[l] = rr_facet_lobe(rr_lobe_distribution[l], width, lit, wo) * rr_spread(width, sin_radius);
 #if RR_HAS_RATIO
         if (l == 0) g.lobes[l] *= rr_ratio(rr_lobe_alpha[l], lit, wo);
+#endif
+#if RR_HAS_RETURNED
+        if (rr_lobe_returned[l] > 0.0) g.lobes[l] *= rr_returned_from(l, lit, wo) + rr_returned_from(l, wo, lit);
 #endif
     }
     g.first = rr_oren_nayar(rr_sigma, wi, wo);

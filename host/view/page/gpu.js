@@ -71,11 +71,19 @@ function operatorRows(operators) {
     ...one.emission.flatMap((emission, k) => [one.excitation[k], emission]),
   ]);
 }
+// Tables of what comes back from deeper interfaces, one lobe after the other; null where no lobe has one.
+function returnedTables(lobes) {
+  const size = 32 * 28 * 9,
+    values = new Float32Array(size * lobes.length);
+  lobes.forEach((lobe, l) => lobe.returned && values.set(lobe.returned, l * size));
+  return lobes.some((lobe) => lobe.returned) ? values : null;
+}
 function addingLayout(state) {
   const passages = Math.max(1, ...state.lobes.map((lobe) => lobe.passages.length)),
     lobes = state.lobes;
   const padded = [...lobes, { distribution: 2, alpha: 1, ior: 0, passages: [] }];
   const ratio = lobes[0] && lobes[0].ratio,
+    returned = returnedTables(lobes),
     spreads = state.orenNayar && state.orenNayar.spread.length > 0;
   return {
     rows: { SCALE: [state.scale], IOR: [state.topIor] },
@@ -84,14 +92,16 @@ function addingLayout(state) {
       RR_LOBES: lobes.length,
       RR_PASSAGES: passages,
       RR_HAS_RATIO: Number(Boolean(ratio)),
+      RR_HAS_RETURNED: Number(Boolean(returned)),
       RR_SPREADS: Number(Boolean(spreads)),
       RR_DISPERSIVE: 0,
     },
-    shapes: [ratio || null, spreads ? state.orenNayar.spread : null, state.orenNayar ? state.orenNayar.albedo : null],
+    shapes: [ratio || null, spreads ? state.orenNayar.spread : null, state.orenNayar ? state.orenNayar.albedo : null, returned],
     uniforms: {
       'int rr_lobe_distribution[]': padded.map((lobe) => lobe.distribution),
       'float rr_lobe_alpha[]': padded.map((lobe) => lobe.alpha),
       'float rr_lobe_ior[]': padded.map((lobe) => lobe.ior),
+      'float rr_lobe_returned[]': padded.map((lobe) => lobe.returnedWidth || 0),
       'vec3 rr_passage[]': padded
         .flatMap((lobe) => Array.from({ length: passages }, (_, p) => lobe.passages[p] || [0, 1, 1]))
         .flat(),
@@ -135,6 +145,6 @@ function weidlichWilkieLayout(state) {
     tables,
     uniforms,
     defines: { RR_LAYERS: layers.length, RR_DISPERSIVE: Number(state.isDispersive) },
-    shapes: [null, null, null],
+    shapes: [null, null, null, null],
   };
 }

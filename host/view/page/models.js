@@ -175,12 +175,14 @@ function addingRadiance(state, wi, wo, light, lampSine) {
     state.topAlpha > 0
       ? facetLobe(state.topDistribution, state.topAlpha, lit, wo) * spread(state.topAlpha, lampSine)
       : 0;
+  const returned = (lobe) =>
+    returnedRatio(lobe.returned, lobe.returnedWidth, lit, wo) + returnedRatio(lobe.returned, lobe.returnedWidth, wo, lit);
   const lobes = state.lobes.map((lobe) => {
     const width = lobeWidth(lobe, lit[2], wo[2]);
     return (
       facetLobe(lobe.distribution, width, lit, wo) *
       spread(width, lampSine) *
-      (lobe.ratio ? facetRatio(lobe.ratio, lobe.alpha, lit, wo) : 1)
+      (lobe.ratio ? facetRatio(lobe.ratio, lobe.alpha, lit, wo) : lobe.returned ? returned(lobe) : 1)
     );
   });
   const body = bodyRadiance(state, wi, wo, light);

@@ -129,6 +129,38 @@ function facetRatio(values, alpha, wi, wo) {
   const cosinePlace = (c) => clamp(((Math.sqrt(Math.max(c, 0)) - 0.1) * 15) / 0.9, 0, 15);
   return shapeValue(values, cosinePlace(wi[2]), cosinePlace(wo[2]), clamp((q * (1 + k)) / (q + k), 0, 1) * 16);
 }
+// Ratio of the light that comes back from a deeper interface to its lobe, from the first of two directions: linear
+// in a table of 32 cosines, 28 slopes of the half vector and 9 azimuths (kernels/scatter/lobe_ratio.h).
+const azimuthPlace = (cosine) => {
+  const x = Math.min(Math.abs(cosine), 1);
+  const angle = Math.sqrt(1 - x) * (1.5707288 + x * (-0.2121144 + x * (0.074261 - x * 0.0187293)));
+  return (8 / Math.PI) * (cosine < 0 ? Math.PI - angle : angle);
+};
+function returnedRatio(values, width, own, other) {
+  const sum = added(own, other),
+    across = sum[0] * sum[0] + sum[1] * sum[1],
+    sin2 = own[0] * own[0] + own[1] * own[1];
+  const largest = (1 + Math.sqrt(Math.max(1 - own[2] * own[2], 0))) / Math.max(own[2], 0.01);
+  const u = Math.min(Math.sqrt(across) / Math.max(sum[2], 1e-15) / largest, 1),
+    k = (8 * width) / largest;
+  const along = own[0] * sum[0] + own[1] * sum[1];
+  const places = [
+    clamp(((Math.sqrt(Math.max(own[2], 0)) - 0.1) * 31) / 0.9, 0, 31),
+    ((u * (1 + k)) / (u + k)) * 27,
+    azimuthPlace(along / Math.sqrt(Math.max(across * sin2, 1e-30))),
+  ];
+  const at = places.map((place, axis) => clamp(Math.floor(place), 0, [30, 26, 7][axis]));
+  let value = 0;
+  for (let corner = 0; corner < 8; ++corner) {
+    const step = [corner & 1, (corner >> 1) & 1, corner >> 2];
+    const weight = step.reduce((product, s, axis) => {
+      const t = places[axis] - at[axis];
+      return product * (s ? t : 1 - t);
+    }, 1);
+    value += weight * values[((at[0] + step[0]) * 28 + at[1] + step[1]) * 9 + at[2] + step[2]];
+  }
+  return value;
+}
 // Width of a deeper interface's lobe over the half vector in air.
 function lobeWidth(lobe, cosI, cosO) {
   if (lobe.ior === 0) return lobe.alpha;

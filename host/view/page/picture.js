@@ -82,13 +82,14 @@ class Picture {
     return this.programs.get(source);
   }
   upload(rows, tables, shapes, bands) {
-    const gl = this.gl;
+    const gl = this.gl,
+      widthOf = (k, values) => [17, 17, values.length, 9][k];
     this.textures.forEach((one) => gl.deleteTexture(one));
     this.textures = [
       bandTexture(gl, rows, bands),
       nodeTexture(gl, tables, bands),
       ...shapes.map((values, k) =>
-        values ? texture(gl, k === 2 ? values.length : 17, k === 2 ? 1 : 256, values, ['R32F', 'RED']) : null,
+        values ? texture(gl, widthOf(k, values), values.length / widthOf(k, values), values, ['R32F', 'RED']) : null,
       ),
     ];
   }
@@ -114,7 +115,7 @@ class Picture {
     gl.uniformMatrix3fv(at('rr_turn'), false, turn.flat());
     gl.uniformMatrix3fv(at('rr_turn_of_mesh'), false, turn.flat());
     gl.uniform1f(at('rr_around'), Number(this.isAround));
-    ['rr_bands', 'rr_nodes', 'rr_ratios', 'rr_spreads', 'rr_separable'].forEach((name, k) => {
+    ['rr_bands', 'rr_nodes', 'rr_ratios', 'rr_spreads', 'rr_separable', 'rr_returned'].forEach((name, k) => {
       gl.activeTexture(gl.TEXTURE0 + k);
       gl.bindTexture(gl.TEXTURE_2D, this.textures[k] || this.textures[0]);
       gl.uniform1i(at(name), k);

@@ -15,7 +15,8 @@ function unpackGrid(grid) {
   grid.numbers = decode(grid.numbers, Float32Array);
   grid.stride = 2 + grid.tables * NODES;
   for (const shape of grid.shapes || [])
-    for (const lobe of shape.lobes) if (lobe.ratio) lobe.ratio = decode(lobe.ratio, Float32Array);
+    for (const lobe of shape.lobes)
+      for (const key of ['ratio', 'returned']) if (lobe[key]) lobe[key] = decode(lobe[key], Float32Array);
   if (grid.orenNayar)
     for (const key of ['albedo', 'spread']) grid.orenNayar[key] = decode(grid.orenNayar[key], Float32Array);
 }

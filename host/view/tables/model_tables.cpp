@@ -40,8 +40,12 @@ Json lobe_json(const LobeShape& lobe) {
                  {"alpha", lobe.alpha},
                  {"ior", lobe.ior},
                  {"passages", passages}};
-    if (lobe.table)
+    if (lobe.is_between_facets())
         json["ratio"] = encoded_floats({lobe.table->begin(), lobe.table->end()});
+    else if (lobe.table) {
+        json["returned"] = encoded_floats({lobe.table->begin(), lobe.table->end()});
+        json["returnedWidth"] = sampling_width(lobe, 1.0);
+    }
     return json;
 }
 
