@@ -106,7 +106,7 @@ TEST_F(GlslFile, EvaluatesToTheModelInTheBrowser) {
         for (std::size_t pixel = 0; pixel < 9; ++pixel) {
             const std::array<double, 3> exact =
                 exact_colour(viewed.material, model, 0.4 * static_cast<double>(pixel % 3) + 0.1,
-                             0.4 * static_cast<double>(pixel / 3) + 0.2);
+                             0.4 * std::floor(static_cast<double>(pixel) / 3.0) + 0.2);
             const double largest = std::max({exact[0], exact[1], exact[2]});
             for (std::size_t channel = 0; channel < 3; ++channel)
                 EXPECT_NEAR(outcome.at("values")[4 * pixel + channel].get<double>(), exact[channel],

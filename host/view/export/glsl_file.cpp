@@ -86,9 +86,9 @@ vec3 rr_eval(vec3 wi, vec3 wo) {
     RrSums first, rest;
     if (wi.z <= 0.0 || wo.z <= 0.0) return sum;
     for (int k = 0; k <= RR_TERMS; ++k) first.terms[k] = rest.terms[k] = 0.0;
-    RrGeometry g = rr_geometry(wi, wo, 0.0);
+    rr_here = rr_geometry(wi, wo, 0.0);
     for (int chunk = 0; chunk < RR_CHUNKS; ++chunk)
-        sum += rr_seen(rr_chunk(g, chunk, RR_BAND(RR_LAMP_ROW, chunk), first, rest), chunk);
+        sum += rr_seen(rr_chunk(chunk, RR_BAND(RR_LAMP_ROW, chunk), first, rest), chunk);
     return sum;
 }
 

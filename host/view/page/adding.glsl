@@ -151,34 +151,37 @@ RrGeometry rr_geometry(vec3 wi, vec3 wo, float sin_radius) {
     return g;
 }
 
+// Of the directions that are looked at; as an argument it would be copied for every chunk.
+RrGeometry rr_here;
+
 // Radiance over irradiance at normal incidence `light`, bands of a chunk.
-vec4 rr_chunk(RrGeometry g, int chunk, vec4 light, inout RrSums first, inout RrSums rest) {
-    vec4 lit = light * g.cos_i;
+vec4 rr_chunk(int chunk, vec4 light, inout RrSums first, inout RrSums rest) {
+    vec4 lit = light * rr_here.cos_i;
 #if RR_DYE_NODES > 0
     vec4 seen = vec4(0.0);
     for (int p = 0; p < RR_DYE_NODES; ++p)
-        seen += g.dyes[p] * g.cos_i * rr_table(RR_SENT + p, chunk, g.cos_i);
-    seen *= rr_table(RR_T, chunk, g.cos_o);
+        seen += rr_here.dyes[p] * rr_here.cos_i * rr_table(RR_SENT + p, chunk, rr_here.cos_i);
+    seen *= rr_table(RR_T, chunk, rr_here.cos_o);
 #else
 #if RR_DENSE
-    vec4 sent = g.first * g.cos_i * rr_table(RR_SENT, chunk, g.cos_i);
+    vec4 sent = rr_here.first * rr_here.cos_i * rr_table(RR_SENT, chunk, rr_here.cos_i);
 #if RR_OPERATORS == 2
-    sent += g.rest * g.cos_i * rr_table(RR_SENT + 1, chunk, g.cos_i);
+    sent += rr_here.rest * rr_here.cos_i * rr_table(RR_SENT + 1, chunk, rr_here.cos_i);
 #endif
 #else
-    vec4 arrives = rr_table(RR_T, chunk, g.cos_i) * lit;
-    vec4 sent = g.first * rr_operator(0, chunk, arrives, first);
+    vec4 arrives = rr_table(RR_T, chunk, rr_here.cos_i) * lit;
+    vec4 sent = rr_here.first * rr_operator(0, chunk, arrives, first);
 #if RR_OPERATORS == 2
-    sent += g.rest * rr_operator(1, chunk, arrives, rest);
+    sent += rr_here.rest * rr_operator(1, chunk, arrives, rest);
 #endif
 #endif
-    vec4 seen = rr_table(RR_T, chunk, g.cos_o) * RR_BAND(RR_SCALE_ROW, chunk) * sent;
+    vec4 seen = rr_table(RR_T, chunk, rr_here.cos_o) * RR_BAND(RR_SCALE_ROW, chunk) * sent;
 #endif
-    vec4 mirrored = rr_table(RR_RESIDUAL, chunk, g.cos_i) * rr_table(RR_RESIDUAL, chunk, g.cos_o);
-    if (g.top > 0.0) mirrored += g.top * rr_fresnel4(g.cos_h, RR_BAND(RR_IOR_ROW, chunk));
+    vec4 mirrored = rr_table(RR_RESIDUAL, chunk, rr_here.cos_i) * rr_table(RR_RESIDUAL, chunk, rr_here.cos_o);
+    if (rr_here.top > 0.0) mirrored += rr_here.top * rr_fresnel4(rr_here.cos_h, RR_BAND(RR_IOR_ROW, chunk));
     for (int l = 0; l < RR_LOBES; ++l)
-        mirrored += g.lobes[l] * rr_table(RR_AMPLITUDE + l, chunk, g.cos_i) *
-                    rr_table(RR_AMPLITUDE + l, chunk, g.cos_o);
+        mirrored += rr_here.lobes[l] * rr_table(RR_AMPLITUDE + l, chunk, rr_here.cos_i) *
+                    rr_table(RR_AMPLITUDE + l, chunk, rr_here.cos_o);
     return seen + mirrored * lit;
 }
 // Weight of the mirror direction.

@@ -56,7 +56,7 @@ vec3 rr_shade(vec3 wi, vec3 wo) {
     vec3 from = is_lit ? wi : wo;
     float disc = is_lit ? rr_disc(wi, wo) / (RR_PI * max(rr_lamp_sine * rr_lamp_sine, 1e-12)) : 0.0;
 #if !RR_DISPERSIVE
-    RrGeometry g = rr_geometry(from, wo, rr_lamp_sine);
+    rr_here = rr_geometry(from, wo, rr_lamp_sine);
 #endif
     for (int chunk = 0; chunk < RR_CHUNKS; ++chunk) {
         vec4 lamp = RR_BAND(RR_LAMP_ROW, chunk), radiance = vec4(0.0);
@@ -64,12 +64,12 @@ vec3 rr_shade(vec3 wi, vec3 wo) {
 #if RR_DISPERSIVE
             for (int lane = 0; lane < 4; ++lane) {
                 vec4 one = vec4(equal(ivec4(0, 1, 2, 3), ivec4(lane)));
-                RrGeometry g = rr_geometry_of_band(from, wo, rr_lamp_sine, chunk, lane);
+                rr_here = rr_geometry_of_band(from, wo, rr_lamp_sine, chunk, lane);
                 // a band at a time, so that the running sums grow by its light alone
-                radiance += one * rr_chunk(g, chunk, one * lamp, first, rest);
+                radiance += one * rr_chunk(chunk, one * lamp, first, rest);
             }
 #else
-            radiance = rr_chunk(g, chunk, lamp, first, rest);
+            radiance = rr_chunk(chunk, lamp, first, rest);
 #endif
             if (disc > 0.0) radiance += disc * lamp * rr_mirror(chunk, wi.z);
         }

@@ -75,45 +75,48 @@ RrGeometry rr_geometry(vec3 wi, vec3 wo, float sin_radius) {
 
 vec4 rr_through_slab(vec4 depth, float cosine) { return exp(-depth / max(cosine, 1e-6)); }
 
+// Of the directions that are looked at; as an argument it would be copied for every chunk.
+RrGeometry rr_here;
+
 // Radiance over irradiance at normal incidence `light`, bands of a chunk.
-vec4 rr_chunk(RrGeometry g, int chunk, vec4 light, inout RrSums first, inout RrSums rest) {
-    vec4 lit = light * g.cos_i, in_ = vec4(1.0), out_ = vec4(1.0);
-    vec4 mirrored = rr_table(RR_RESIDUAL, chunk, g.cos_i) * rr_table(RR_RESIDUAL, chunk, g.cos_o);
+vec4 rr_chunk(int chunk, vec4 light, inout RrSums first, inout RrSums rest) {
+    vec4 lit = light * rr_here.cos_i, in_ = vec4(1.0), out_ = vec4(1.0);
+    vec4 mirrored = rr_table(RR_RESIDUAL, chunk, rr_here.cos_i) * rr_table(RR_RESIDUAL, chunk, rr_here.cos_o);
     for (int k = 0; k < RR_LAYERS; ++k) {
         vec4 depth = RR_BAND(RR_DEPTH_ROW + 2 * k, chunk);
-        if (g.lobe[k] > 0.0)
-            mirrored += in_ * out_ * g.lobe[k] * rr_reflectance(k, chunk, g.cos_h[k], g.fresnel[k].x);
-        in_ *= 1.0 - rr_reflectance(k, chunk, g.meets_i[k], g.fresnel[k].y);
-        out_ *= 1.0 - g.facets[k] * rr_reflectance(k, chunk, g.meets_o[k], g.fresnel[k].z);
+        if (rr_here.lobe[k] > 0.0)
+            mirrored += in_ * out_ * rr_here.lobe[k] * rr_reflectance(k, chunk, rr_here.cos_h[k], rr_here.fresnel[k].x);
+        in_ *= 1.0 - rr_reflectance(k, chunk, rr_here.meets_i[k], rr_here.fresnel[k].y);
+        out_ *= 1.0 - rr_here.facets[k] * rr_reflectance(k, chunk, rr_here.meets_o[k], rr_here.fresnel[k].z);
         if (rr_layer_is_cloudy[k]) {
-            vec4 both = depth * (1.0 / max(g.slab_i[k], 1e-6) + 1.0 / max(g.slab_o[k], 1e-6));
-            mirrored += in_ * out_ * g.phase[k] / (g.slab_i[k] + g.slab_o[k]) *
+            vec4 both = depth * (1.0 / max(rr_here.slab_i[k], 1e-6) + 1.0 / max(rr_here.slab_o[k], 1e-6));
+            mirrored += in_ * out_ * rr_here.phase[k] / (rr_here.slab_i[k] + rr_here.slab_o[k]) *
                         RR_BAND(RR_DEPTH_ROW + 2 * k + 1, chunk) * (1.0 - exp(-both));
         }
         if (any(greaterThan(depth, vec4(0.0)))) {
-            in_ *= rr_through_slab(depth, g.slab_i[k]);
-            out_ *= rr_through_slab(depth, g.slab_o[k]);
+            in_ *= rr_through_slab(depth, rr_here.slab_i[k]);
+            out_ *= rr_through_slab(depth, rr_here.slab_o[k]);
         }
         float coverage = rr_flake_coverage[k];
         if (coverage > 0.0) {
-            mirrored += in_ * out_ * coverage * g.flakes[k] * rr_table(rr_flake_table[k], chunk, g.flake_h[k]);
+            mirrored += in_ * out_ * coverage * rr_here.flakes[k] * rr_table(rr_flake_table[k], chunk, rr_here.flake_h[k]);
             in_ *= 1.0 - coverage;
             out_ *= 1.0 - coverage;
         }
     }
-    in_ *= g.passes;
+    in_ *= rr_here.passes;
     if (rr_base_table >= 0) {
-        if (g.lobe[RR_LAYERS] > 0.0)
-            mirrored += in_ * out_ * g.lobe[RR_LAYERS] * rr_table(rr_base_table, chunk, g.cos_h[RR_LAYERS]);
+        if (rr_here.lobe[RR_LAYERS] > 0.0)
+            mirrored += in_ * out_ * rr_here.lobe[RR_LAYERS] * rr_table(rr_base_table, chunk, rr_here.cos_h[RR_LAYERS]);
         return mirrored * lit;
     }
 #if RR_DENSE
     // tabulated for smooth interfaces, of the lamp that is lit
-    vec4 sent = g.passes * g.cos_i * rr_table(RR_SENT, chunk, g.cos_i);
+    vec4 sent = rr_here.passes * rr_here.cos_i * rr_table(RR_SENT, chunk, rr_here.cos_i);
 #else
     vec4 sent = rr_operator(0, chunk, in_ * lit, first);
 #endif
-    return out_ * g.shape / RR_PI * sent + mirrored * lit;
+    return out_ * rr_here.shape / RR_PI * sent + mirrored * lit;
 }
 
 // Weight of the mirror direction, of smooth interfaces, flakes and a smooth conductor.

@@ -163,7 +163,7 @@ VariantGrid variant_grid(const Material& material, const WavelengthGrid& bands,
     };
     VariantGrid grid;
     for (const auto [depth, alpha] :
-         {Moves{true, true}, {true, false}, {false, true}, {false, false}}) {
+         {Moves{true, true}, {false, true}, {true, false}, {false, false}}) {
         if ((depth && !may_move) || (alpha && !may_roughen))
             continue;
         grid = material.stack.scatters() ? fixed_depths(stacks, !absorbing.empty())
