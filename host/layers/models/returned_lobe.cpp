@@ -208,10 +208,12 @@ private:
         return first_turn < last_turn ? 1.0 : 0.0;
     }
 
-    /// A direction in air as it is beneath the smooth interfaces.
+    /// A direction in air as it is beneath the smooth interfaces; one that they reflect totally is
+    /// grazing there.
     Vec3 refracted(const Vec3& w) const {
+        constexpr double least2 = 1e-12;
         const double z2 = 1.0 - (1.0 - w.z) * (1.0 + w.z) / (ior_ * ior_);
-        return kernels::vec3(w.x / ior_, w.y / ior_, std::sqrt(std::max(z2, 0.0)));
+        return kernels::vec3(w.x / ior_, w.y / ior_, std::sqrt(std::max(z2, least2)));
     }
 
     /// Share of light from beneath that the smooth interfaces send back.
@@ -244,10 +246,15 @@ bool is_of_cavities(const StackElement& element) {
 
 } // namespace
 
+bool has_returned_ratio(std::span<const StackElement> stack, std::size_t first, std::size_t last) {
+    return deeper_lobe(stack, first).alpha != 0.0 ||
+           std::ranges::none_of(stack.first(last + 1), is_of_cavities);
+}
+
 LobeShape returned_lobe(std::span<const StackElement> stack, std::size_t first, std::size_t last) {
     LobeShape lobe = deeper_lobe(stack, first);
     lobe.distribution = distribution_at(stack, first);
-    if (lobe.alpha == 0.0 && std::ranges::any_of(stack.first(last + 1), is_of_cavities))
+    if (!has_returned_ratio(stack, first, last))
         return lobe;
     lobe.distribution = Distribution::Ggx; // its tails are long enough for all
     StackElements nearby(stack.begin(), stack.begin() + static_cast<std::ptrdiff_t>(last) + 1);

@@ -22,4 +22,7 @@ namespace reradiant {
 /// scales it to the flux that it must carry.
 LobeShape returned_lobe(std::span<const StackElement> stack, std::size_t first, std::size_t last);
 
+/// Returns true where that lobe has a table.
+bool has_returned_ratio(std::span<const StackElement> stack, std::size_t first, std::size_t last);
+
 } // namespace reradiant

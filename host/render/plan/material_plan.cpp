@@ -94,6 +94,8 @@ private:
         plan_.counts.layers *= 2;
         plan_.counts.lobes *= 2;
         plan_.counts.floats *= 2;
+        plan_.counts.floats += returned_ratio_count(upside_down(stack_)) * LOBE_RATIO_SIZE;
+        plan_.counts.floats -= returned_ratio_count(stack_) * LOBE_RATIO_SIZE;
         const bool is_rough = !material_.stack.is_smooth();
         plan_.is_straight = !is_rough;
         plan_.counts.floats += row_; // a substrate that sends nothing back, for the other side
@@ -206,10 +208,8 @@ private:
         plan_.counts.lobes = static_cast<std::uint64_t>(plan_.features.lobes);
         plan_.features.deeper_lobes = plan_.counts.lobes > 0;
         if (plan_.choice.model == Model::Adding) {
-            // no more than that: some lobes have no table
-            const std::uint64_t facets = has_facet_lobe_on_a_side() ? 1 : 0;
-            plan_.counts.floats +=
-                facets * SHAPE_TABLE_SIZE + (plan_.counts.lobes - facets) * LOBE_RATIO_SIZE;
+            plan_.counts.floats += (has_facet_lobe_on_a_side() ? SHAPE_TABLE_SIZE : 0) +
+                                   returned_ratio_count(stack_) * LOBE_RATIO_SIZE;
         }
         if (plan_.choice.model == Model::WeidlichWilkie)
             for (const DeeperLobe& lobe : weidlich_wilkie_lobes(stack_))

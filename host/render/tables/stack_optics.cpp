@@ -1,32 +1,48 @@
 #include "host/render/tables/stack_optics.h"
 
+#include "host/layers/models/returned_lobe.h"
 #include "host/layers/models/weidlich_wilkie_bsdf.h"
 #include "host/scene/model/closed_model.h"
 #include "kernels/core/shared.h"
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 namespace reradiant {
 
 namespace {
 
-/// Lobes besides the top one that adding makes at most: one of the light between the top's facets,
-/// one for each deeper rough interface and for each run of smooth ones beneath a rough one.
-int adding_lobe_count(const StackElements& stack) {
-    int count = has_facet_lobe(stack) ? 1 : 0;
+/// First and last element of what makes a lobe.
+struct LobeElements {
+    std::size_t first, last;
+};
+
+/// Lobes of deeper interfaces that adding makes at most: one for each rough one and for each run of
+/// smooth ones beneath a rough one.
+std::vector<LobeElements> returned_lobes(const StackElements& stack) {
+    std::vector<LobeElements> lobes;
     bool below_rough = false, in_run = false, is_top = true;
-    for (const StackElement& element : above_substrate(stack)) {
-        const auto* interface = std::get_if<SurfaceValues>(&element);
+    for (std::size_t e = 0; e < above_substrate(stack).size(); ++e) {
+        const auto* interface = std::get_if<SurfaceValues>(&stack[e]);
         if (!interface)
             continue;
         const bool rough = interface->alpha > 0.0;
-        if (!is_top && (rough || (below_rough && !in_run)))
-            ++count;
+        if (in_run && !rough)
+            lobes.back().last = e;
+        else if (!is_top && (rough || below_rough))
+            lobes.push_back({e, e});
         below_rough = below_rough || rough;
         in_run = below_rough && !rough;
         is_top = false;
     }
-    return count;
+    return lobes;
+}
+
+/// Lobes besides the top one that adding makes at most: one of the light between the top's facets,
+/// and those of deeper interfaces.
+int adding_lobe_count(const StackElements& stack) {
+    return (has_facet_lobe(stack) ? 1 : 0) + static_cast<int>(returned_lobes(stack).size());
 }
 
 } // namespace
@@ -36,6 +52,13 @@ bool has_facet_lobe(const StackElements& stack) {
     return top && !top->is_conductor && top->alpha > 0.0 &&
            top->scattering == Scattering::Multiple && top->distribution != Distribution::Blinn &&
            top->ior_below > 1.0;
+}
+
+std::size_t returned_ratio_count(const StackElements& stack) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(returned_lobes(stack), [&](const LobeElements& lobe) {
+            return has_returned_ratio(stack, lobe.first, lobe.last);
+        }));
 }
 
 bool depends_on_wavelength(const Material& material) {

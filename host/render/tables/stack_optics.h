@@ -54,6 +54,10 @@ bool depends_on_wavelength(const Material& material);
 /// more than once, with a table of its own.
 bool has_facet_lobe(const StackElements& stack);
 
+/// Number of lobes of deeper interfaces that have a table (host/layers/models/returned_lobe.h)
+/// under adding.
+std::size_t returned_ratio_count(const StackElements& stack);
+
 /// Number of rough lobes besides the top one that a material can have under a model.
 int deeper_lobe_count(const Material& material, Model model);
 
