@@ -267,6 +267,40 @@ TEST_F(PageControls, PageSaysWhereWebglIsMissing) {
     EXPECT_NE(outcome.at("reading").get<std::string>().find("X, Y, Z"), std::string::npos);
 }
 
+// A driver that does not take the shader costs the picture, not the values.
+TEST_F(PageControls, PageSaysWhatAShaderLacks) {
+    std::string html = page_of(viewed_preset("neon-orange-bare"));
+    html.insert(html.find("<head>") + 6,
+                "<script>WebGL2RenderingContext.prototype.getShaderParameter = () => false;"
+                "WebGL2RenderingContext.prototype.getShaderInfoLog = () => 'too old';</script>");
+    const nlohmann::json outcome = opened(html, R"js(
+  changed();
+  await new Promise((done) => setTimeout(done, 200));
+  outcome.said = place('message').textContent;
+  outcome.reading = place('reading').textContent;
+)js");
+    EXPECT_NE(outcome.at("said").get<std::string>().find("does not compile: too old"),
+              std::string::npos);
+    EXPECT_NE(outcome.at("reading").get<std::string>().find("X, Y, Z"), std::string::npos);
+}
+
+TEST_F(PageControls, PictureIsBackAfterTheGraphicsCardWasLost) {
+    const nlohmann::json outcome = opened(page_of(viewed_preset("neon-orange-bare")), hands + R"js(
+  drawNow();
+  const before = drawn(240.5, 260.5), lost = gl.getExtension('WEBGL_lose_context');
+  lost.loseContext();
+  await new Promise((done) => setTimeout(done, 100));
+  drawNow();
+  lost.restoreContext();
+  await new Promise((done) => setTimeout(done, 200));
+  drawNow();
+  outcome.before = before;
+  outcome.after = drawn(240.5, 260.5);
+)js");
+    EXPECT_EQ(outcome.at("before"), outcome.at("after"));
+    EXPECT_GT(outcome.at("after")[0], 0);
+}
+
 // The goal is half a second by software on two cores; a machine that is busy beside gets a factor.
 TEST_F(PageControls, FrameIsDrawnInTimeBySoftware) {
     for (const char* preset : {"neon-orange-varnished", "fluorescent-orange-rough", "car-paint"}) {

@@ -4,6 +4,7 @@ const gl = canvas.getContext('webgl2', { antialias: false, preserveDrawingBuffer
 let pictures = [],
   states = {},
   isStale = true,
+  arePicturesStale = true,
   isAsked = false;
 
 // A change of material or light makes tables anew; one of the view only draws.
@@ -24,25 +25,31 @@ function refresh() {
   isStale = false;
   states = {};
   for (const model of modelsShown()) states[model] = stateOf(model);
-  modelsShown().forEach((model, k) => {
-    if (!gl) return;
-    pictures[k] = pictures[k] || new Picture(gl);
-    pictures[k].prepare(states[model], lampNow(), aroundNow(), screenRows());
-  });
+  arePicturesStale = true;
   if (place('toml')) place('toml').textContent = materialToml(materialNow(), view.sliders);
 }
+function drawPictures() {
+  if (!gl || gl.isContextLost()) return;
+  const shown = modelsShown(),
+    middle = shown.length > 1 ? Math.round(view.divider * SIZE) : SIZE;
+  if (arePicturesStale)
+    shown.forEach((model, k) => {
+      pictures[k] = pictures[k] || new Picture(gl);
+      pictures[k].prepare(states[model], lampNow(), aroundNow(), screenRows());
+    });
+  arePicturesStale = false;
+  pictures[0].draw(view, mesh, SIZE, 0, middle);
+  if (middle < SIZE) pictures[1].draw(view, mesh, SIZE, middle, SIZE);
+}
+// Values are written where the graphics card fails, too.
 function drawNow() {
   refresh();
-  const middle = view.model === 'both' ? Math.round(view.divider * SIZE) : SIZE;
-  if (gl) {
-    pictures[0].draw(view, mesh, SIZE, 0, middle);
-    if (middle < SIZE) pictures[1].draw(view, mesh, SIZE, middle, SIZE);
-  }
   place('divider-line').hidden = view.model !== 'both';
   place('divider-line').style.left = 100 * view.divider + '%';
   place('left-model').textContent = view.model === 'both' ? materialNow().models[0] : '';
   place('right-model').textContent = view.model === 'both' ? materialNow().models[1] : '';
   showReading();
+  drawPictures();
 }
 
 const three = (values, digits) => values.map((value) => value.toFixed(digits)).join(', ');

@@ -156,8 +156,7 @@ function substrateWeights(state, wi, wo) {
 }
 // What substrate and dyes send out again.
 function bodyRadiance(state, wi, wo, light) {
-  if (state.dyed)
-    return dyedSeen(state.dyed, dyedSent(state.dyed, wi[2], light), wo[2]).map((value) => value * wi[2]);
+  if (state.dyed) return dyedSeen(state.dyed, dyedSent(state.dyed, wi[2], light), wo[2]).map((value) => value * wi[2]);
   const arrives = light.map((value, b) => value * wi[2] * lookUp(state.transmission[b], wi[2]));
   const sent = substrateWeights(state, wi, wo).map((weight, p) =>
     applied(state.operators[p], arrives).map((value) => weight * value),
