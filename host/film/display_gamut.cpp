@@ -12,7 +12,7 @@ namespace {
 /// Share of the way to the surface that is left as it is, and the power of the curve beyond.
 constexpr double kept_share = 0.8, curve_power = 1.2;
 /// Ottosson's alpha: how strongly saturated colours go towards the middle instead of sidewards.
-constexpr double towards_middle = 0.5;
+constexpr double towards_middle = 2.0;
 
 const Eigen::Matrix3d& published_cones() {
     static const Eigen::Matrix3d matrix{{0.8189330101, 0.3618667424, -0.1288597137},
