@@ -119,7 +119,7 @@ Picture develop(const SpectralImage& image, const DevelopOptions& options) {
     picture.width = image.width;
     picture.height = image.height;
     picture.encoding = display.encoding;
-    picture.white_xy = options.auto_white ? bright_chromaticity(pixels) : options.white_xy;
+    picture.white_xy = options.auto_white ? median_chromaticity(pixels) : options.white_xy;
     if (picture.white_xy)
         adapt(pixels, *picture.white_xy);
     picture.exposure_ev =

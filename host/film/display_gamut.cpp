@@ -10,29 +10,26 @@ namespace reradiant {
 namespace {
 
 /// Share of the way to the surface that is left as it is, and the power of the curve beyond.
-constexpr double kept_share = 0.8, curve_power = 1.2;
-/// Ottosson's alpha: how strongly saturated colours go towards the middle instead of sidewards.
+constexpr double kept_share = 0.9, curve_power = 1.2;
+/// Ottosson's alpha, how strongly saturated colours go towards the middle instead of sidewards.
 constexpr double towards_middle = 2.0;
 
+/// Ebner and Fairchild 1998: Hunt, Pointer and Estevez's cones of XYZ with a white of D65, the
+/// power that they are raised to, and lightness and both chroma components of that.
 const Eigen::Matrix3d& published_cones() {
-    static const Eigen::Matrix3d matrix{{0.8189330101, 0.3618667424, -0.1288597137},
-                                        {0.0329845436, 0.9293118715, 0.0361456387},
-                                        {0.0482003018, 0.2643662691, 0.6338517070}};
+    static const Eigen::Matrix3d matrix{
+        {0.4002, 0.7075, -0.0807}, {-0.2280, 1.1500, 0.0612}, {0.0, 0.0, 0.9184}};
+    return matrix;
+}
+constexpr double cone_power = 0.43;
+const Eigen::Matrix3d& ipt_of_cones() {
+    static const Eigen::Matrix3d matrix{
+        {0.4000, 0.4000, 0.2000}, {4.4550, -4.8510, 0.3960}, {0.8056, 0.3572, -1.1628}};
     return matrix;
 }
 
-/// The rows of both chroma components add up to 0, to the ten digits that are published; the last
-/// column makes it exact.
-const Eigen::Matrix3d& lab_of_cones() {
-    static const Eigen::Matrix3d matrix = [] {
-        Eigen::Matrix3d published{{0.2104542553, 0.7936177850, -0.0040720468},
-                                  {1.9779984951, -2.4285922050, 0.4505937099},
-                                  {0.0259040371, 0.7827717662, -0.8086757660}};
-        for (const int row : {1, 2})
-            published(row, 2) = -published(row, 0) - published(row, 1);
-        return published;
-    }();
-    return matrix;
+double signed_power(double value, double power) {
+    return std::copysign(std::pow(std::abs(value), power), value);
 }
 
 /// The ACES curve with its asymptote at 1; slope 1 where it begins.
@@ -62,21 +59,22 @@ DisplayGamut::DisplayGamut(const Eigen::Matrix3d& xyz_of_primaries) {
     primaries_of_xyz_ = (xyz_of_primaries / white_y_).inverse();
 }
 
-Eigen::Vector3d DisplayGamut::oklab_of(const Eigen::Vector3d& xyz) const {
+Eigen::Vector3d DisplayGamut::ipt_of(const Eigen::Vector3d& xyz) const {
     const Eigen::Vector3d cones = cones_of_xyz_ * xyz;
-    return lab_of_cones() *
-           Eigen::Vector3d(std::cbrt(cones[0]), std::cbrt(cones[1]), std::cbrt(cones[2]));
+    return ipt_of_cones() *
+           cones.unaryExpr([](double cone) { return signed_power(cone, cone_power); });
 }
 
-Eigen::Vector3d DisplayGamut::xyz_of(const Eigen::Vector3d& oklab) const {
-    static const Eigen::Matrix3d cones_of_lab = lab_of_cones().inverse();
-    const Eigen::Vector3d roots = cones_of_lab * oklab;
-    return xyz_of_cones_ * roots.cwiseProduct(roots).cwiseProduct(roots);
+Eigen::Vector3d DisplayGamut::xyz_of(const Eigen::Vector3d& ipt) const {
+    static const Eigen::Matrix3d cones_of_ipt = ipt_of_cones().inverse();
+    const Eigen::Vector3d powers = cones_of_ipt * ipt;
+    return xyz_of_cones_ *
+           powers.unaryExpr([](double power) { return signed_power(power, 1.0 / cone_power); });
 }
 
-bool DisplayGamut::is_inside(const Eigen::Vector3d& oklab) const {
+bool DisplayGamut::is_inside(const Eigen::Vector3d& ipt) const {
     constexpr double rounding = 1e-7;
-    const Eigen::Vector3d rgb = primaries_of_xyz_ * xyz_of(oklab);
+    const Eigen::Vector3d rgb = primaries_of_xyz_ * xyz_of(ipt);
     return rgb.minCoeff() >= -rounding && rgb.maxCoeff() <= 1.0 + rounding;
 }
 
@@ -84,14 +82,14 @@ Xyz DisplayGamut::compressed(const Xyz& xyz) const {
     const Eigen::Vector3d relative = Eigen::Vector3d(xyz[0], xyz[1], xyz[2]) / white_y_;
     if (!relative.allFinite())
         return xyz;
-    const Eigen::Vector3d colour = oklab_of(relative);
+    const Eigen::Vector3d colour = ipt_of(relative);
     const double chroma = std::hypot(colour[1], colour[2]);
     const Eigen::Vector3d neutral(target_lightness(colour[0], chroma), 0.0, 0.0);
     const Eigen::Vector3d away = colour - neutral;
     if (is_inside(neutral + away / kept_share))
         return xyz;
     double inside = 0.0, outside = 1.0 / kept_share; // of the surface, in lengths of `away`
-    constexpr int halvings = 40;
+    constexpr int halvings = 30;
     for (int k = 0; k < halvings; ++k) {
         const double middle = 0.5 * (inside + outside);
         (is_inside(neutral + middle * away) ? inside : outside) = middle;

@@ -8,10 +8,18 @@ namespace reradiant {
 namespace {
 
 constexpr double darkest = 0.1, brightest = 0.9, shown_at = 0.6;
-constexpr std::size_t bright_part = 10, highlight_part = 100;
+constexpr std::size_t highlight_part = 100;
+constexpr double dark_share = 0.05;
 
 bool is_finite(const Xyz& xyz) {
     return std::isfinite(xyz[0]) && std::isfinite(xyz[1]) && std::isfinite(xyz[2]);
+}
+
+/// The value that would stand at a place if the values were sorted.
+double element(std::vector<double>& values, std::size_t place) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
 }
 
 } // namespace
@@ -26,9 +34,7 @@ double body_level(const std::vector<Xyz>& pixels) {
     }
     if (levels.empty())
         return 0.0;
-    const auto middle = levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2);
-    std::nth_element(levels.begin(), middle, levels.end());
-    return *middle;
+    return element(levels, levels.size() / 2);
 }
 
 double exposure_of_level(double level) {
@@ -37,22 +43,23 @@ double exposure_of_level(double level) {
     return std::round(10.0 * std::log2(shown_at / level)) / 10.0; // as it is printed
 }
 
-std::optional<std::array<double, 2>> bright_chromaticity(const std::vector<Xyz>& pixels) {
-    std::vector<Xyz> lit;
+std::optional<std::array<double, 2>> median_chromaticity(const std::vector<Xyz>& pixels) {
+    std::vector<double> luminances, x, y;
     for (const Xyz& xyz : pixels)
         if (is_finite(xyz) && xyz[1] > 0.0)
-            lit.push_back(xyz);
-    if (lit.empty())
+            luminances.push_back(xyz[1]);
+    if (luminances.empty())
         return std::nullopt;
-    std::sort(lit.begin(), lit.end(), [](const Xyz& a, const Xyz& b) { return a[1] > b[1]; });
-    const std::size_t highlights = lit.size() / highlight_part;
-    const std::size_t end = std::max(highlights + 1, lit.size() / bright_part);
-    Xyz sum{0.0, 0.0, 0.0};
-    for (std::size_t k = highlights; k < end; ++k)
-        for (std::size_t c = 0; c < 3; ++c)
-            sum[c] += lit[k][c];
-    const double all = sum[0] + sum[1] + sum[2];
-    return std::array<double, 2>{sum[0] / all, sum[1] / all};
+    const std::size_t count = luminances.size();
+    const double brightest_body = element(luminances, count - 1 - count / highlight_part);
+    for (const Xyz& xyz : pixels) {
+        if (!is_finite(xyz) || xyz[1] < dark_share * brightest_body || xyz[1] > brightest_body)
+            continue;
+        const double sum = xyz[0] + xyz[1] + xyz[2];
+        x.push_back(xyz[0] / sum);
+        y.push_back(xyz[1] / sum);
+    }
+    return std::array<double, 2>{element(x, x.size() / 2), element(y, y.size() / 2)};
 }
 
 } // namespace reradiant

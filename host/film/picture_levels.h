@@ -16,8 +16,10 @@ double body_level(const std::vector<Xyz>& pixels);
 /// white as it is, or is black; else it is shown at 0.6 of white.
 double exposure_of_level(double body_level);
 
-/// CIE 1931 x and y of the sum of the bright pixels: those that belong to the brightest tenth but
-/// not to the brightest hundredth of all that are not black. Empty where all are black.
-std::optional<std::array<double, 2>> bright_chromaticity(const std::vector<Xyz>& pixels);
+/// Medians of the CIE 1931 x and y of the pixels that are neither dark nor lamps or highlights:
+/// those with a luminance from a twentieth of the 99th percentile (of what is not black) up to it.
+/// Saturated bodies do not count where they cover less than half of these pixels. Empty where all
+/// are black.
+std::optional<std::array<double, 2>> median_chromaticity(const std::vector<Xyz>& pixels);
 
 } // namespace reradiant

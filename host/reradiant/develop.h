@@ -25,9 +25,9 @@ struct DevelopOptions {
     /// CIE 1931 x and y of the light that becomes the display's white, by Bradford adaptation;
     /// empty: that of D65, and nothing is adapted.
     std::optional<std::array<double, 2>> white_xy = {};
-    /// The white is the mean colour of the image's bright pixels, and `white_xy` is not read: those
-    /// with a luminance between that of the brightest tenth and that of the brightest hundredth of
-    /// all pixels that are not black; what is brighter is taken for lamps and highlights.
+    /// The white is the median colour of the image, and `white_xy` is not read: of what has a
+    /// luminance from a twentieth of the 99th percentile up to it, so that neither shadows nor
+    /// lamps and highlights count, nor saturated bodies that cover less than half of the rest.
     bool auto_white = false;
     Gamut gamut = Gamut::Clip;
 };

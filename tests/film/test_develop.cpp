@@ -69,18 +69,17 @@ TEST_F(Develop, ALampsWhiteBecomesNeutral) {
     }
 }
 
-TEST_F(Develop, AutomaticWhiteIsThatOfTheBrightPixelsWithoutHighlights) {
-    SpectralImage image = image_of(illuminant_with_luminance("A", 0.05), 20, 20);
-    const SpectralImage bright = image_of(illuminant_with_luminance("D50", 0.8), 1, 1),
-                        lamp = image_of(illuminant_with_luminance("FL2", 50.0), 1, 1);
-    for (int band = 0; band < visible.count; ++band) {
-        for (int x = 0; x < 20; ++x) {
-            image.at(x, 0, band) = bright.at(0, 0, band);
-            image.at(x, 1, band) = bright.at(0, 0, band);
-        }
-        for (int x = 0; x < 4; ++x) // a hundredth
-            image.at(x, 9, band) = lamp.at(0, 0, band);
-    }
+TEST_F(Develop, AutomaticWhiteIsThatOfMostOfWhatIsLit) {
+    SpectralImage image = image_of(illuminant_with_luminance("D50", 0.3), 20, 20);
+    const auto paint = [&](int from, int to, const Spectrum& spectrum) {
+        const SpectralImage one = image_of(spectrum, 1, 1);
+        for (int pixel = from; pixel < to; ++pixel)
+            for (int band = 0; band < visible.count; ++band)
+                image.at(pixel % 20, pixel / 20, band) = one.at(0, 0, band);
+    };
+    paint(0, 120, Spectrum::gaussian(600, 30, 1.0)); // a glowing body, brighter than the rest
+    paint(120, 220, illuminant_with_luminance("A", 0.001));  // shadow
+    paint(220, 224, illuminant_with_luminance("FL2", 50.0)); // a hundredth: a lamp
     DevelopOptions options;
     options.auto_white = true;
     const Picture picture = develop(image, options);

@@ -120,8 +120,9 @@ TEST(DisplayGamut, SaturatedColoursKeepTheirHueAsClippingDoesNot) {
     print("hue angle of CIELAB, compress", angle_compress);
     print("hue term of CIEDE2000, clip", term_clip);
     print("hue term of CIEDE2000, compress", term_compress);
-    // Oklab's hue is not that of CIELAB, most of all in the blue, so that it is not 0. Of the angle
-    // half is left, of the term, which grows with chroma, two thirds; 0.8 leaves room for rounding.
+    // The hue of IPT is not that of CIELAB, most of all in the blue, so that it is not 0. Of the
+    // angle half is left, of the term, which grows with chroma, two thirds; 0.8 leaves room for
+    // rounding.
     EXPECT_LT(mean(angle_compress), 0.8 * mean(angle_clip));
     EXPECT_LT(percentile_95(angle_compress), 0.8 * percentile_95(angle_clip));
     EXPECT_LT(mean(term_compress), 0.8 * mean(term_clip));
@@ -144,7 +145,7 @@ TEST(DisplayGamut, NeutralAxisIsUnchanged) {
 TEST(DisplayGamut, ColoursWellInsideStayToTheBit) {
     const DisplayGamut gamut(srgb_primaries());
     std::mt19937 random(2);
-    // Towards a grey of half the white, well within four fifths of the way to the surface.
+    // Towards a grey of half the white, well within nine tenths of the way to the surface.
     std::uniform_real_distribution<double> channel(0.3, 0.5);
     for (int k = 0; k < 1000; ++k) {
         const Xyz xyz = linear_srgb_to_xyz({channel(random), channel(random), channel(random)});

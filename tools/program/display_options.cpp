@@ -83,8 +83,8 @@ void add_display_options(Command& command, DisplayTexts& texts) {
                    "0.6 of white, where it is not from 0.1 to 0.9 as it is");
     command.option("--white", texts.white,
                    "the light that becomes white, by Bradford adaptation: a lamp as `colour` "
-                   "takes it, its file, chromaticity x,y, or auto (the mean of the bright "
-                   "pixels); D65 is white as it is");
+                   "takes it, its file, chromaticity x,y, or auto (the median colour of "
+                   "the image); D65 is white as it is");
     command
         .option("--gamut", texts.gamut,
                 "what the display cannot show: clip (each channel by itself) or compress (hue and "
