@@ -1,6 +1,6 @@
-#include "reradiant/develop.h"
+#include "host/film/display/develop.h"
 
-#include "host/film/picture_levels.h"
+#include "host/film/display/picture_levels.h"
 #include "reradiant/colour.h"
 #include "tests/film/film_fixtures.h"
 

@@ -1,4 +1,4 @@
-#include "host/film/display_gamut.h"
+#include "host/film/display/display_gamut.h"
 #include "reradiant/spectrum.h"
 #include "tests/film/film_fixtures.h"
 
@@ -44,6 +44,12 @@ bool is_in_gamut(const Xyz& xyz, double tolerance = 1e-6) {
 struct HueError {
     double angle_deg, term;
 };
+
+/// Red to green by the hue of CIELAB, as most of what fluoresces looks.
+bool is_warm(const Xyz& xyz) {
+    const auto lab = xyz_to_lab(xyz, white);
+    return lab[2] > 0.0;
+}
 
 HueError hue_error(const Xyz& xyz, const Xyz& other) {
     const auto one = xyz_to_lab(xyz, white), two = xyz_to_lab(other, white);
@@ -101,7 +107,8 @@ double percentile_95(std::vector<double> values) {
 
 TEST(DisplayGamut, SaturatedColoursKeepTheirHueAsClippingDoesNot) {
     const DisplayGamut gamut(srgb_primaries());
-    std::vector<double> angle_clip, angle_compress, term_clip, term_compress;
+    std::vector<double> angle_clip, angle_compress, term_clip, term_compress, warm_clip,
+        warm_compress;
     for (const Xyz& colour : saturated_colours()) {
         const Xyz compressed = gamut.compressed(colour);
         EXPECT_TRUE(is_in_gamut(compressed)) << colour[0] << " " << colour[1] << " " << colour[2];
@@ -111,6 +118,10 @@ TEST(DisplayGamut, SaturatedColoursKeepTheirHueAsClippingDoesNot) {
         angle_compress.push_back(compress.angle_deg);
         term_clip.push_back(clip.term);
         term_compress.push_back(compress.term);
+        if (is_warm(colour)) {
+            warm_clip.push_back(clip.angle_deg);
+            warm_compress.push_back(compress.angle_deg);
+        }
     }
     const auto print = [](const char* what, const std::vector<double>& values) {
         fmt::print("{}: mean {:.3f}, 95 % below {:.3f}\n", what, mean(values),
@@ -118,6 +129,8 @@ TEST(DisplayGamut, SaturatedColoursKeepTheirHueAsClippingDoesNot) {
     };
     print("hue angle of CIELAB, clip", angle_clip);
     print("hue angle of CIELAB, compress", angle_compress);
+    print("hue angle of CIELAB of red to green, clip", warm_clip);
+    print("hue angle of CIELAB of red to green, compress", warm_compress);
     print("hue term of CIEDE2000, clip", term_clip);
     print("hue term of CIEDE2000, compress", term_compress);
     // The hue of IPT is not that of CIELAB, most of all in the blue, so that it is not 0. Of the
@@ -125,6 +138,7 @@ TEST(DisplayGamut, SaturatedColoursKeepTheirHueAsClippingDoesNot) {
     // rounding.
     EXPECT_LT(mean(angle_compress), 0.8 * mean(angle_clip));
     EXPECT_LT(percentile_95(angle_compress), 0.8 * percentile_95(angle_clip));
+    EXPECT_LT(mean(warm_compress), 0.5 * mean(warm_clip)) << "a fifth is left";
     EXPECT_LT(mean(term_compress), 0.8 * mean(term_clip));
 }
 

@@ -1,4 +1,4 @@
-#include "reradiant/develop.h"
+#include "host/film/display/develop.h"
 #include "host/report/json_file.h"
 #include "reradiant/error.h"
 #include "tools/program/command.h"

@@ -1,6 +1,6 @@
 #include "reradiant/merge.h"
 #include "host/base/logging.h"
-#include "host/film/display_picture.h"
+#include "host/film/display/display_picture.h"
 #include "host/film/image_memory.h"
 #include "host/report/json_file.h"
 #include "reradiant/error.h"

@@ -1,6 +1,6 @@
 #include "reradiant/render.h"
 #include "host/base/logging.h"
-#include "host/film/display_picture.h"
+#include "host/film/display/display_picture.h"
 #include "host/render/checkpoint/render_identity.h"
 #include "host/render/film/render_statistics.h"
 #include "host/render/wavefront/team_render.h"

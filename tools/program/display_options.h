@@ -1,7 +1,7 @@
 #pragma once
 
+#include "host/film/display/develop.h"
 #include "host/spectral/colour/lamp.h"
-#include "reradiant/develop.h"
 #include "tools/program/command_line.h"
 
 #include <string>

@@ -1,7 +1,7 @@
 #include "host/study/study/contact_sheet.h"
 
-#include "host/film/display_picture.h"
-#include "host/film/png.h"
+#include "host/film/display/display_picture.h"
+#include "host/film/display/png.h"
 
 #include <algorithm>
 

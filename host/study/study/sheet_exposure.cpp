@@ -1,7 +1,7 @@
 #include "host/study/study/sheet_exposure.h"
 
 #include "host/film/colour_image.h"
-#include "host/film/picture_levels.h"
+#include "host/film/display/picture_levels.h"
 #include "reradiant/spectral_image.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "host/film/jpeg.h"
+#include "host/film/display/jpeg.h"
 
 #include "host/base/atomic_file.h"
 #include "reradiant/error.h"

@@ -12,7 +12,8 @@ namespace reradiant {
 
 /// What happens to colours that a display cannot show. `Clip` cuts every channel off by itself,
 /// which moves hues. `Compress` takes them towards the neutral axis at their own hue, the further
-/// the more they are outside, so that differences between them stay; see host/film/display_gamut.h.
+/// the more they are outside, so that differences between them stay; see
+/// host/film/display/display_gamut.h.
 enum class Gamut { Clip, Compress };
 
 /// `DevelopOptions` say how a spectral image becomes a picture.
@@ -32,7 +33,7 @@ struct DevelopOptions {
     Gamut gamut = Gamut::Clip;
 };
 
-/// What the codes of a picture stand for, as far as it is known; see host/film/png.h.
+/// What the codes of a picture stand for, as far as it is known; see host/film/display/png.h.
 struct PictureEncoding {
     bool is_srgb = false;
     /// x and y of white, red, green and blue; empty where a configuration made the picture.
@@ -60,8 +61,8 @@ Picture develop(const SpectralImage& image, const DevelopOptions& options);
 /// Refuses, before there is an image, what `develop` would refuse.
 void check_develop(const DevelopOptions& options);
 
-/// Writes a picture as its file's ending says: .png, or .jpg and .jpeg, which are for sRGB displays
-/// alone. Atomic. Input Error for another ending.
+/// Writes a picture: a JPEG where the file's ending is .jpg or .jpeg, which are for sRGB displays
+/// alone (input Error else), a PNG otherwise. Atomic.
 void write_picture(const std::filesystem::path& file, const Picture& picture);
 
 } // namespace reradiant

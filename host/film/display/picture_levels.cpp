@@ -1,4 +1,4 @@
-#include "host/film/picture_levels.h"
+#include "host/film/display/picture_levels.h"
 
 #include <algorithm>
 #include <cmath>

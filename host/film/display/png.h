@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reradiant/develop.h"
+#include "host/film/display/develop.h"
 
 #include <cstdint>
 #include <filesystem>

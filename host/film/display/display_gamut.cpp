@@ -1,4 +1,4 @@
-#include "host/film/display_gamut.h"
+#include "host/film/display/display_gamut.h"
 
 #include <Eigen/LU>
 

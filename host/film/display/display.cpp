@@ -1,4 +1,4 @@
-#include "host/film/display_picture.h"
+#include "host/film/display/display_picture.h"
 
 #include "reradiant/error.h"
 

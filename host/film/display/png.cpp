@@ -1,4 +1,4 @@
-#include "host/film/png.h"
+#include "host/film/display/png.h"
 
 #include "host/base/atomic_file.h"
 #include "reradiant/error.h"

@@ -1,4 +1,4 @@
-#include "host/film/display_processor.h"
+#include "host/film/display/display_processor.h"
 
 #include "host/base/logging.h"
 #include "reradiant/colour.h"
