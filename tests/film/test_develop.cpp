@@ -4,6 +4,8 @@
 #include "reradiant/colour.h"
 #include "tests/film/film_fixtures.h"
 
+#include <OpenColorIO/OpenColorIO.h>
+
 #include <cstdlib>
 
 namespace reradiant {
@@ -178,6 +180,17 @@ TEST_F(Develop, CompressionIsForTheBuiltInDisplays) {
     options.gamut = Gamut::Compress;
     const std::string message = error_message(2, [&] { check_develop(options); });
     EXPECT_NE(message.find("--gamut"), std::string::npos) << message;
+}
+
+TEST_F(Develop, ConfigurationsInsideTheLibraryWorkOrAreExplained) {
+    DevelopOptions options;
+    options.display.ocio_config = "ocio://default";
+    if (OCIO_VERSION_HEX >= 0x02020000) {
+        check_develop(options);
+        return;
+    }
+    const std::string message = error_message(2, [&] { check_develop(options); });
+    EXPECT_NE(message.find("OpenColorIO 2.2"), std::string::npos) << message;
 }
 
 } // namespace reradiant

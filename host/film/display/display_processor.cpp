@@ -161,7 +161,19 @@ const char* add_path_to_config(const OCIO::Config& config, OCIO::GroupTransform&
     return OCIO::ROLE_SCENE_LINEAR;
 }
 
+/// `ocio://default` and its like are configurations inside the library.
+void check_builtin_configuration(const std::string& name) {
+    constexpr int first_version_with_them = 0x02020000;
+    if (name.starts_with("ocio://") && OCIO::GetVersionHex() < first_version_with_them)
+        throw_input_error({name},
+                          fmt::format("built-in configurations came with OpenColorIO 2.2, and this "
+                                      "is {}",
+                                      OCIO::GetVersion()),
+                          "give a configuration file, or leave it away for the built-in displays");
+}
+
 DisplayProcessor config_processor(const std::string& name, const DisplayOptions& options) {
+    check_builtin_configuration(name);
     std::error_code ignored;
     if (std::filesystem::exists(name, ignored) && !std::filesystem::is_regular_file(name, ignored))
         throw_input_error({name}, "is no regular file", "give a configuration file");
