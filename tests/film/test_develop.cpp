@@ -90,6 +90,8 @@ TEST_F(Develop, AutomaticWhiteIsThatOfMostOfWhatIsLit) {
     EXPECT_NEAR((*picture.white_xy)[0], 0.3457, 1e-3);
     EXPECT_NEAR((*picture.white_xy)[1], 0.3585, 1e-3);
     EXPECT_FALSE(develop(image_of(Spectrum::constant(0.0)), options).white_xy) << "all is black";
+    EXPECT_FALSE(develop(image_of(Spectrum::gaussian(600, 2, 1.0)), options).white_xy)
+        << "light of a laser is no white, and no reason to lose a render";
 }
 
 TEST_F(Develop, AutomaticExposureShowsTheMedianAtThreeFifths) {

@@ -162,7 +162,7 @@ RenderResult render_image(const RenderCommand& command, const CommonOptions& com
 void write_results(RenderCommand& command, const RenderResult& result) {
     Picture picture;
     picture.exposure_ev = command.display.display.exposure_ev;
-    if (!command.png.empty() || command.display.auto_exposure)
+    if (command.display.auto_exposure)
         picture = develop(result.image, command.display);
     write_spectral_exr(command.output, result.image, picture.exposure_ev);
     std::error_code ignored; // not before: what a full disk does not take can be written later
@@ -170,6 +170,8 @@ void write_results(RenderCommand& command, const RenderResult& result) {
         std::filesystem::remove(command.render.checkpoint, ignored);
     if (command.png.empty())
         return;
+    if (!command.display.auto_exposure)
+        picture = develop(result.image, command.display);
     write_picture(command.png, picture);
     command.outside = picture.out_of_gamut;
 }

@@ -1,5 +1,6 @@
 #include "host/film/display/develop.h"
 
+#include "host/base/logging.h"
 #include "host/base/output_ending.h"
 #include "host/film/colour_image.h"
 #include "host/film/display/display_gamut.h"
@@ -27,13 +28,16 @@ Xyz white_of(const std::array<double, 2>& xy) {
     return {xy[0] / xy[1], 1.0, (1.0 - xy[0] - xy[1]) / xy[1]};
 }
 
+/// Returns whether an eye could be adapted to light of this chromaticity.
+bool is_white(const std::array<double, 2>& xy) {
+    if (!(xy[0] > 0.0 && xy[1] > 0.0 && xy[0] + xy[1] < 1.0))
+        return false;
+    const auto cones = bradford_cones(white_of(xy));
+    return cones[0] > 0.0 && cones[1] > 0.0 && cones[2] > 0.0;
+}
+
 void check_white(const std::array<double, 2>& xy) {
-    const bool is_colour = xy[0] > 0.0 && xy[1] > 0.0 && xy[0] + xy[1] < 1.0;
-    bool is_seen = is_colour;
-    if (is_colour)
-        for (const double cone : bradford_cones(white_of(xy)))
-            is_seen = is_seen && cone > 0.0;
-    if (!is_seen)
+    if (!is_white(xy))
         throw_input_error({},
                           fmt::format("--white: x = {:.4g}, y = {:.4g} is no white that an eye "
                                       "adapts to",
@@ -41,11 +45,25 @@ void check_white(const std::array<double, 2>& xy) {
                           "take a less saturated light; D65 is 0.3127,0.3290");
 }
 
+/// The white to adapt; empty: none. What the image shows is no mistake of the user's, so that a
+/// median colour that is no white is only warned of.
+std::optional<std::array<double, 2>> white_of(const std::vector<Xyz>& pixels,
+                                              const DevelopOptions& options) {
+    if (!options.auto_white)
+        return options.white_xy;
+    const auto median = median_chromaticity(pixels);
+    if (!median || is_white(*median))
+        return median;
+    logging::warn("--white auto: the median colour of the image (x = {:.4g}, y = {:.4g}) is too "
+                  "saturated for a white; nothing is adapted",
+                  (*median)[0], (*median)[1]);
+    return std::nullopt;
+}
+
 /// Adaptation from a white to D65, that of linear sRGB. Without a white nothing is adapted: the
 /// illuminant D65 on a white surface has the display's white already, and other light keeps its
 /// colour, as it would in a room where the eye is adapted to D65.
 void adapt(std::vector<Xyz>& pixels, const std::array<double, 2>& white_xy) {
-    check_white(white_xy);
     const Xyz from = white_of(white_xy), d65 = linear_srgb_to_xyz({1.0, 1.0, 1.0});
     std::array<Xyz, 3> columns;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -119,7 +137,7 @@ Picture develop(const SpectralImage& image, const DevelopOptions& options) {
     picture.width = image.width;
     picture.height = image.height;
     picture.encoding = display.encoding;
-    picture.white_xy = options.auto_white ? median_chromaticity(pixels) : options.white_xy;
+    picture.white_xy = white_of(pixels, options);
     if (picture.white_xy)
         adapt(pixels, *picture.white_xy);
     picture.exposure_ev =

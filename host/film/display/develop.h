@@ -28,7 +28,8 @@ struct DevelopOptions {
     std::optional<std::array<double, 2>> white_xy = {};
     /// The white is the median colour of the image, and `white_xy` is not read: of what has a
     /// luminance from a twentieth of the 99th percentile up to it, so that neither shadows nor
-    /// lamps and highlights count, nor saturated bodies that cover less than half of the rest.
+    /// lamps and highlights count, nor saturated bodies that cover less than half of the rest. A
+    /// median that is no white is warned of, and nothing is adapted.
     bool auto_white = false;
     Gamut gamut = Gamut::Clip;
 };
