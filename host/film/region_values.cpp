@@ -60,10 +60,16 @@ double error_by_spread(const std::vector<std::size_t>& pixels, const PixelValue&
     return std::sqrt(mean_square / (count - 1.0));
 }
 
-ErrorSource source_of(bool has_variance, std::size_t pixels) {
+/// One sample has no variance, and the file says 0 there.
+ErrorSource source_of(const std::vector<float>& variance, const SpectralImage& image,
+                      const std::vector<std::size_t>& pixels) {
+    bool has_variance = !variance.empty();
+    for (const std::size_t pixel : pixels)
+        has_variance =
+            has_variance && (image.sample_count.empty() || image.sample_count[pixel] >= 2.0f);
     if (has_variance)
         return ErrorSource::Variance;
-    return pixels > 1 ? ErrorSource::Spread : ErrorSource::Unknown;
+    return pixels.size() > 1 ? ErrorSource::Spread : ErrorSource::Unknown;
 }
 
 void add_band(RegionValues& values, const SpectralImage& image,
@@ -111,8 +117,8 @@ RegionValues region_values(const SpectralImage& image, const ImageRegion& region
     const std::vector<Xyz> weights = xyz_weights(image.bands);
     RegionValues values;
     values.pixels = pixels.size();
-    values.radiance_error = source_of(!image.variance_bands.empty(), pixels.size());
-    values.luminance_error = source_of(!image.variance_y.empty(), pixels.size());
+    values.radiance_error = source_of(image.variance_bands, image, pixels);
+    values.luminance_error = source_of(image.variance_y, image, pixels);
     for (std::size_t band = 0; band < weights.size(); ++band) {
         add_band(values, image, pixels, band);
         for (std::size_t c = 0; c < 3; ++c)

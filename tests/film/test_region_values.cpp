@@ -48,6 +48,16 @@ TEST(RegionValues, StandardErrorIsOfTheVarianceWhereThereIsOne) {
     EXPECT_EQ(values.radiance_error, ErrorSource::Variance);
 }
 
+TEST(RegionValues, OneSampleHasNoVariance) {
+    SpectralImage image = ramp();
+    image.variance_y.assign(12, 0.0f);
+    image.sample_count.assign(12, 4.0f);
+    image.sample_count[2] = 1.0f;
+    EXPECT_EQ(region_values(image, rectangle(0, 0, 3, 0)).luminance_error, ErrorSource::Spread);
+    EXPECT_EQ(region_values(image, rectangle(2, 0, 2, 0)).luminance_error, ErrorSource::Unknown);
+    EXPECT_EQ(region_values(image, rectangle(0, 1, 3, 1)).luminance_error, ErrorSource::Variance);
+}
+
 TEST(RegionValues, StandardErrorIsOfTheSpreadElse) {
     const RegionValues values = region_values(ramp(), rectangle(0, 0, 3, 0));
     // 1, 2, 3, 4: a variance of 5/3.
