@@ -1,6 +1,6 @@
 #include "tests/scene/scratch.h"
 
-#include "host/film/png.h"
+#include "host/film/display/png.h"
 #include "reradiant/scene_file.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "tests/scene/scratch.h"
 
-#include "host/film/png.h"
+#include "host/film/display/png.h"
 #include "reradiant/scene_file.h"
 
 #include <cmath>
@@ -68,7 +68,8 @@ TEST_F(Textures, TheLastTextureRunsFastest) {
     // Keys are read in the order of the reader: alpha before thickness.
     EXPECT_EQ(read.textures.at(static_cast<std::size_t>(surface.textures[0])).name, "clouds");
     const auto layer = [&](int i) {
-        return read.materials.at(static_cast<std::size_t>(surface.first_material + i))
+        return read.materials
+            .at(static_cast<std::size_t>(surface.first_material) + static_cast<std::size_t>(i))
             .stack.layers.at(0);
     };
     EXPECT_EQ(layer(0).thickness, 1.0);

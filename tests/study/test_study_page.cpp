@@ -1,4 +1,4 @@
-#include "host/film/png.h"
+#include "host/film/display/png.h"
 #include "host/report/data_uri.h"
 #include "host/report/polar_plot.h"
 #include "host/study/page/contact_sheet.h"

@@ -6,9 +6,9 @@ namespace {
 
 using CommandLine = ProgramTest;
 
-const char* const commands[] = {"render", "measure",  "synth",    "fit",     "colour", "study",
-                                "view",   "converge", "classify", "compare", "merge",  "validate",
-                                "info",   "convert",  "check",    "devices"};
+const char* const commands[] = {"render", "measure",  "synth",    "fit",     "colour",  "study",
+                                "view",   "converge", "classify", "compare", "merge",   "validate",
+                                "info",   "convert",  "check",    "devices", "develop", "probe"};
 
 } // namespace
 

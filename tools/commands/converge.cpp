@@ -1,5 +1,5 @@
 #include "host/study/converge/converge.h"
-#include "host/film/display_picture.h"
+#include "host/film/display/display_picture.h"
 #include "host/render/wavefront/render_hooks.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"

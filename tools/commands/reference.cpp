@@ -1,6 +1,6 @@
 #include "tools/commands/reference.h"
 
-#include "host/film/png.h"
+#include "host/film/display/png.h"
 #include "host/scene/document/key_reference.h"
 #include "host/scene/document/toml_document.h"
 #include "host/scene/toml/scene_table.h"

@@ -1,6 +1,6 @@
 #include "reradiant/render.h"
 #include "host/base/logging.h"
-#include "host/film/display_picture.h"
+#include "host/film/display/display_picture.h"
 #include "host/render/checkpoint/render_identity.h"
 #include "host/render/film/render_statistics.h"
 #include "host/render/wavefront/render_hooks.h"
@@ -15,6 +15,7 @@
 #include "reradiant/scene_file.h"
 #include "reradiant/spectral_image.h"
 #include "tools/program/command.h"
+#include "tools/program/display_options.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/join_team.h"
 #include "tools/program/outputs.h"
@@ -35,19 +36,21 @@ struct RenderCommand {
     std::filesystem::path scene, output, png;
     std::string tev;
     RenderOptions render;
-    DisplayOptions display;
+    DisplayTexts display_texts;
+    DevelopOptions display;
     std::string model = "auto", wavelengths = "comb", bands, variance, sample_range,
                 phase = "random";
     bool samples_given = false;
     std::size_t outside = 0; ///< pixels outside the display's gamut, once it is written
 
     bool shows_a_display() const {
-        return !png.empty() || !display.ocio_config.empty() || !display.display.empty() ||
-               !display.view.empty();
+        return !png.empty() || !display_texts.ocio.empty() || !display_texts.display.empty() ||
+               !display_texts.view.empty();
     }
 };
 
 void apply_texts(RenderCommand& command, const CommonOptions& common) {
+    command.display = parse_display_options(command.display_texts);
     command.render.seed = common.seed;
     command.render.threads = common.threads;
     command.render.model = parse_model_option(command.model);
@@ -161,12 +164,20 @@ RenderResult render_image(const RenderCommand& command, const CommonOptions& com
 }
 
 void write_results(RenderCommand& command, const RenderResult& result) {
-    write_spectral_exr(command.output, result.image, command.display.exposure_ev);
+    Picture picture;
+    picture.exposure_ev = command.display.display.exposure_ev;
+    if (command.display.auto_exposure)
+        picture = develop(result.image, command.display);
+    write_spectral_exr(command.output, result.image, picture.exposure_ev);
     std::error_code ignored; // not before: what a full disk does not take can be written later
     if (!command.render.checkpoint.empty())
         std::filesystem::remove(command.render.checkpoint, ignored);
-    if (!command.png.empty())
-        command.outside = write_display_png(command.png, result.image, command.display);
+    if (command.png.empty())
+        return;
+    if (!command.display.auto_exposure)
+        picture = develop(result.image, command.display);
+    write_picture(command.png, picture);
+    command.outside = picture.out_of_gamut;
 }
 
 int run_render(RenderCommand command, const CommandContext& context) {
@@ -176,9 +187,9 @@ int run_render(RenderCommand command, const CommandContext& context) {
     const std::vector<NamedOutput> outputs = {{"-o", command.output, {".exr"}},
                                               {"--png", command.png, {".png"}}};
     check_outputs(common, outputs, {command.scene});
-    check_exposure(command.display.exposure_ev);
+    check_exposure(command.display.display.exposure_ev);
     if (command.shows_a_display())
-        check_display(command.display);
+        check_develop(command.display);
     const Scene scene = load_scene(command.scene);
     check_outputs(common, outputs, named_files());
     team ? catch_interrupts() : end_at_interrupts(); // teams end together
@@ -257,13 +268,10 @@ void add_sampling_options(Command app, RenderCommand& command) {
         .in_range(std::size_t{1}, std::size_t{1} << 24);
 }
 
-void add_display_options(Command app, RenderCommand& command) {
+void add_picture_options(Command app, RenderCommand& command) {
     app.option("--png", command.png, "write the display image too");
     app.option("--tev", command.tev, "HOST:PORT of the viewer tev: shows every pass there");
-    app.option("--ocio", command.display.ocio_config, "OpenColorIO config");
-    app.option("--display", command.display.display, "display of the config");
-    app.option("--view", command.display.view, "view of the display");
-    app.option("--exposure", command.display.exposure_ev, "exposure of the display image, EV");
+    add_display_options(app, command.display_texts);
 }
 
 } // namespace
@@ -275,7 +283,7 @@ void add_render_command(Program& program, CommandContext& context) {
     app.option("-o,--output", command->output, "spectral EXR to write").required();
     add_stopping_options(app, *command);
     add_sampling_options(app, *command);
-    add_display_options(app, *command);
+    add_picture_options(app, *command);
     app.footer("Example: reradiant render scene.toml -o out.exr --png out.png --spp 256");
     app.callback([command, &context] { context.exit_code = run_render(*command, context); });
 }

@@ -1,6 +1,6 @@
 #include "host/study/study/study.h"
 #include "host/base/atomic_file.h"
-#include "host/film/display_picture.h"
+#include "host/film/display/display_picture.h"
 #include "host/render/wavefront/render_hooks.h"
 #include "host/report/json_file.h"
 #include "host/report/progress.h"

@@ -1,6 +1,6 @@
 #include "host/base/logging.h"
 #include "host/base/output_ending.h"
-#include "host/film/display_picture.h"
+#include "host/film/display/display_picture.h"
 #include "host/film/exr_channels.h"
 #include "host/geometry/geometry.h"
 #include "host/report/json_file.h"

@@ -44,6 +44,8 @@ void add_devices_command(Program& program, CommandContext& context);
 void add_convert_command(Program& program, CommandContext& context);
 void add_compare_command(Program& program, CommandContext& context);
 void add_converge_command(Program& program, CommandContext& context);
+void add_develop_command(Program& program, CommandContext& context);
+void add_probe_command(Program& program, CommandContext& context);
 void add_study_command(Program& program, CommandContext& context);
 void add_view_command(Program& program, CommandContext& context);
 void add_merge_command(Program& program, CommandContext& context);

@@ -31,6 +31,8 @@ void add_commands(Program& program, CommandContext& context) {
     add_study_command(program, context);
     add_view_command(program, context);
     add_merge_command(program, context);
+    add_develop_command(program, context);
+    add_probe_command(program, context);
     add_validate_command(program, context);
     add_info_command(program, context);
     add_classify_command(program, context);

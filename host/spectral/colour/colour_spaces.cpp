@@ -1,5 +1,7 @@
 #include "reradiant/colour.h"
 
+#include "host/spectral/colour/bradford.h"
+
 #include <Eigen/Core>
 #include <Eigen/LU>
 
@@ -67,6 +69,12 @@ std::array<double, 3> product(const Eigen::Matrix3d& matrix, const std::array<do
     return {result[0], result[1], result[2]};
 }
 
+const Eigen::Matrix3d& bradford_matrix() {
+    static const Eigen::Matrix3d matrix{
+        {0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}};
+    return matrix;
+}
+
 } // namespace
 
 std::array<double, 3> xyz_to_lab(const Xyz& xyz, const Xyz& white) {
@@ -109,15 +117,17 @@ Xyz linear_srgb_to_xyz(const std::array<double, 3>& rgb) {
     return product(matrix, rgb);
 }
 
+std::array<double, 3> bradford_cones(const Xyz& xyz) {
+    return product(bradford_matrix(), xyz);
+}
+
 Xyz adapt_white(const Xyz& xyz, const Xyz& from_white, const Xyz& to_white) {
-    // Bradford cone responses (Lam 1985), as ICC.1 annex E gives them.
-    Eigen::Matrix3d bradford;
-    bradford << 0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296;
-    const auto from = product(bradford, from_white), to = product(bradford, to_white);
-    auto cones = product(bradford, xyz);
+    static const Eigen::Matrix3d back = bradford_matrix().inverse();
+    const auto from = bradford_cones(from_white), to = bradford_cones(to_white);
+    auto cones = bradford_cones(xyz);
     for (std::size_t c = 0; c < 3; ++c)
         cones[c] *= to[c] / from[c];
-    return product(bradford.inverse(), cones);
+    return product(back, cones);
 }
 
 } // namespace reradiant

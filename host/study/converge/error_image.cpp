@@ -1,6 +1,6 @@
 #include "host/study/converge/error_image.h"
 
-#include "host/film/png.h"
+#include "host/film/display/png.h"
 #include "host/report/colour_map.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "host/study/page/contact_sheet.h"
 
-#include "host/film/display_picture.h"
-#include "host/film/png.h"
+#include "host/film/display/display_picture.h"
+#include "host/film/display/png.h"
 
 #include <algorithm>
 
@@ -56,9 +56,8 @@ void write_contact_sheet(const std::filesystem::path& file, const Study& study,
         const SpectralImage image = read_spectral_exr(cell.folder / "image.exr");
         DisplayOptions display;
         display.exposure_ev = result.exposure_ev;
-        const DisplayPicture picture = display_picture(image, display);
-        write_png(cell.folder / "image.png", image.width, image.height, picture.rgb,
-                  picture.is_srgb);
+        const Picture picture = display_picture(image, display);
+        write_picture(cell.folder / "image.png", picture);
         const int step = (image.width + widest_cell - 1) / widest_cell;
         const int width = image.width / step, height = std::max(1, image.height / step);
         if (!sheet)

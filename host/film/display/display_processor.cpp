@@ -1,18 +1,15 @@
-#include "reradiant/spectral_image.h"
+#include "host/film/display/display_processor.h"
 
 #include "host/base/logging.h"
-#include "host/film/colour_image.h"
-#include "host/film/display_picture.h"
-#include "host/film/png.h"
+#include "reradiant/colour.h"
 #include "reradiant/error.h"
 
-#include <OpenColorIO/OpenColorIO.h>
+#include <Eigen/LU>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 
 namespace OCIO = OCIO_NAMESPACE;
@@ -24,11 +21,26 @@ namespace {
 constexpr std::string_view builtin_prefix = "DISPLAY - CIE-XYZ-D65_to_";
 constexpr const char* builtin_view = "Standard";
 
-/// A processor from CIE XYZ (white D65 with Y = 1) to the display's code values.
-struct DisplayProcessor {
-    OCIO::ConstCPUProcessorRcPtr processor;
-    bool is_srgb = false;
+/// What a picture file can say of a display's curve and primaries.
+struct KnownDisplay {
+    std::string_view name;
+    double gamma; ///< 0: no plain power
+    std::uint8_t cicp_primaries, cicp_transfer;
 };
+
+/// By ITU-T H.273, tables 2 and 3; a transfer of 0 is a curve that it does not have (a power of 2.4
+/// or 2.6). Displays whose white is adapted (BFD) have primaries of their own.
+constexpr std::array known_displays = {KnownDisplay{"sRGB", 0.0, 1, 13},
+                                       KnownDisplay{"REC.1886-REC.709", 2.4, 0, 0},
+                                       KnownDisplay{"REC.1886-REC.2020", 2.4, 0, 0},
+                                       KnownDisplay{"G2.2-REC.709", 2.2, 1, 4},
+                                       KnownDisplay{"G2.6-P3-DCI-BFD", 2.6, 0, 0},
+                                       KnownDisplay{"G2.6-P3-D65", 2.6, 0, 0},
+                                       KnownDisplay{"G2.6-P3-D60-BFD", 2.6, 0, 0},
+                                       KnownDisplay{"DisplayP3", 0.0, 12, 13},
+                                       KnownDisplay{"REC.2100-PQ", 0.0, 9, 16},
+                                       KnownDisplay{"ST2084-P3-D65", 0.0, 12, 16},
+                                       KnownDisplay{"REC.2100-HLG-1000nit", 0.0, 9, 18}};
 
 std::vector<std::string> builtin_displays() {
     std::vector<std::string> names;
@@ -47,6 +59,48 @@ void check_name(const char* what, const std::string& name, const std::vector<std
                           fmt::format("take one of: {}", fmt::join(known, ", ")));
 }
 
+OCIO::ConstCPUProcessorRcPtr builtin_transform(const std::string& display,
+                                               OCIO::TransformDirection direction) {
+    const auto transform = OCIO::BuiltinTransform::Create();
+    transform->setStyle((std::string(builtin_prefix) + display).c_str());
+    transform->setDirection(direction);
+    return OCIO::Config::CreateRaw()->getProcessor(transform)->getDefaultCPUProcessor();
+}
+
+/// The chromaticities are those of the display's own codes. The amounts come from its white, since
+/// a curve such as HLG's depends on all three channels together.
+Eigen::Matrix3d primaries_of(const std::string& display) {
+    const auto to_xyz = builtin_transform(display, OCIO::TRANSFORM_DIR_INVERSE);
+    const auto xyz_of_codes = [&](float red, float green, float blue) {
+        float values[3] = {red, green, blue};
+        to_xyz->applyRGB(values);
+        return Eigen::Vector3d(values[0], values[1], values[2]);
+    };
+    Eigen::Matrix3d directions;
+    directions << xyz_of_codes(1, 0, 0), xyz_of_codes(0, 1, 0), xyz_of_codes(0, 0, 1);
+    const Eigen::Vector3d amounts = directions.inverse() * xyz_of_codes(1, 1, 1);
+    return directions * amounts.asDiagonal();
+}
+
+std::array<double, 2> chromaticity(const Eigen::Vector3d& xyz) {
+    return {xyz[0] / xyz.sum(), xyz[1] / xyz.sum()};
+}
+
+PictureEncoding encoding_of(const std::string& display, const Eigen::Matrix3d& primaries) {
+    PictureEncoding encoding;
+    encoding.is_srgb = display == "sRGB";
+    encoding.primaries_xy = {chromaticity(primaries.rowwise().sum()),
+                             chromaticity(primaries.col(0)), chromaticity(primaries.col(1)),
+                             chromaticity(primaries.col(2))};
+    for (const KnownDisplay& known : known_displays)
+        if (known.name == display) {
+            encoding.gamma = known.gamma;
+            encoding.cicp_primaries = known.cicp_primaries;
+            encoding.cicp_transfer = known.cicp_transfer;
+        }
+    return encoding;
+}
+
 /// Without a configuration: OpenColorIO's own displays. They are built from their styles, because
 /// OpenColorIO 2.1 has no built-in configurations.
 DisplayProcessor builtin_processor(const DisplayOptions& options) {
@@ -54,10 +108,9 @@ DisplayProcessor builtin_processor(const DisplayOptions& options) {
     check_name("display", display, builtin_displays());
     if (!options.view.empty())
         check_name("view", options.view, {builtin_view});
-    const auto transform = OCIO::BuiltinTransform::Create();
-    transform->setStyle((std::string(builtin_prefix) + display).c_str());
-    const auto config = OCIO::Config::CreateRaw();
-    return {config->getProcessor(transform)->getDefaultCPUProcessor(), display == "sRGB"};
+    const Eigen::Matrix3d primaries = primaries_of(display);
+    return {builtin_transform(display, OCIO::TRANSFORM_DIR_FORWARD),
+            encoding_of(display, primaries), primaries};
 }
 
 std::vector<std::string> displays_of(const OCIO::Config& config) {
@@ -108,7 +161,19 @@ const char* add_path_to_config(const OCIO::Config& config, OCIO::GroupTransform&
     return OCIO::ROLE_SCENE_LINEAR;
 }
 
+/// `ocio://default` and its like are configurations inside the library.
+void check_builtin_configuration(const std::string& name) {
+    constexpr int first_version_with_them = 0x02020000;
+    if (name.starts_with("ocio://") && OCIO::GetVersionHex() < first_version_with_them)
+        throw_input_error({name},
+                          fmt::format("built-in configurations came with OpenColorIO 2.2, and this "
+                                      "is {}",
+                                      OCIO::GetVersion()),
+                          "give a configuration file, or leave it away for the built-in displays");
+}
+
 DisplayProcessor config_processor(const std::string& name, const DisplayOptions& options) {
+    check_builtin_configuration(name);
     std::error_code ignored;
     if (std::filesystem::exists(name, ignored) && !std::filesystem::is_regular_file(name, ignored))
         throw_input_error({name}, "is no regular file", "give a configuration file");
@@ -131,8 +196,10 @@ DisplayProcessor config_processor(const std::string& name, const DisplayOptions&
     to_display->setDisplay(display.c_str());
     to_display->setView(view.c_str());
     steps->appendTransform(to_display);
-    return {config->getProcessor(steps)->getDefaultCPUProcessor(), false};
+    return {config->getProcessor(steps)->getDefaultCPUProcessor(), {}, {}};
 }
+
+} // namespace
 
 DisplayProcessor display_processor(const DisplayOptions& options) {
     std::string config = options.ocio_config.string();
@@ -147,70 +214,6 @@ DisplayProcessor display_processor(const DisplayOptions& options) {
         throw_input_error({config}, fmt::format("OpenColorIO refuses this: {}", error.what()),
                           "give a configuration file, or unset $OCIO for plain sRGB");
     }
-}
-
-/// XYZ after the exposure. No white is adapted: the illuminant D65 on a white surface has the
-/// white of the display already, and other light keeps its colour, as it would in a room where
-/// the eye is adapted to D65.
-std::vector<float> exposed_xyz(const SpectralImage& image, double exposure_ev) {
-    const double gain = std::exp2(exposure_ev);
-    std::vector<float> result;
-    result.reserve(3 * static_cast<std::size_t>(image.width) *
-                   static_cast<std::size_t>(image.height));
-    for (const Xyz& xyz : xyz_image(image))
-        for (const double value : xyz)
-            result.push_back(static_cast<float>(gain * value));
-    return result;
-}
-
-/// 8 bit codes of display values 0 to 1. `out_of_gamut` counts the pixels where clipping, beyond
-/// rounding, changes a channel (brighter than white counts too), or that are not finite.
-std::vector<std::uint8_t> quantise(const std::vector<float>& display, std::size_t& out_of_gamut) {
-    std::vector<std::uint8_t> codes(display.size());
-    out_of_gamut = 0;
-    for (std::size_t pixel = 0; pixel < display.size(); pixel += 3) {
-        bool outside = false;
-        for (std::size_t i = pixel; i < pixel + 3; ++i) {
-            const float code = 255.0f * display[i];
-            const bool fits = code > -0.5f && code < 255.5f; // false for NaN
-            outside = outside || !fits;
-            const float clipped = std::isnan(code) ? 0.0f : std::clamp(code, 0.0f, 255.0f);
-            codes[i] = static_cast<std::uint8_t>(std::lround(clipped));
-        }
-        out_of_gamut += outside ? 1 : 0;
-    }
-    return codes;
-}
-
-} // namespace
-
-void check_exposure(double exposure_ev) {
-    constexpr double most_ev = 100.0;
-    if (!(std::abs(exposure_ev) <= most_ev))
-        throw_input_error({}, fmt::format("--exposure is {}", exposure_ev),
-                          fmt::format("it must be from {} to {}", -most_ev, most_ev));
-}
-
-void check_display(const DisplayOptions& options) {
-    display_processor(options);
-}
-
-DisplayPicture display_picture(const SpectralImage& image, const DisplayOptions& options) {
-    const DisplayProcessor display = display_processor(options);
-    std::vector<float> pixels = exposed_xyz(image, options.exposure_ev);
-    OCIO::PackedImageDesc description(pixels.data(), image.width, image.height, 3);
-    display.processor->apply(description);
-    DisplayPicture picture;
-    picture.is_srgb = display.is_srgb;
-    picture.rgb = quantise(pixels, picture.out_of_gamut);
-    return picture;
-}
-
-std::size_t write_display_png(const std::filesystem::path& file, const SpectralImage& image,
-                              const DisplayOptions& options) {
-    const DisplayPicture picture = display_picture(image, options);
-    write_png(file, image.width, image.height, picture.rgb, picture.is_srgb);
-    return picture.out_of_gamut;
 }
 
 } // namespace reradiant
