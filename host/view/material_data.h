@@ -23,8 +23,9 @@ struct ViewedModels {
     std::vector<std::string> notes;
 };
 
-/// Chooses them: adding where it knows the material, and weidlich-wilkie in closed form, which knows
-/// no dyes in layers. Input Error at the material's place where neither can show it, as for sheets.
+/// Chooses them: adding where it knows the material, and weidlich-wilkie in closed form, which
+/// knows no dyes in layers. Input Error at the material's place where neither can show it, as for
+/// sheets.
 ViewedModels viewed_models(const Material& material);
 /// True where one of them can.
 bool is_shown_on_pages(const Material& material);

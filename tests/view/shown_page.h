@@ -17,6 +17,16 @@ inline std::string page_of(const ViewedMaterial& viewed, std::vector<Lamp> lamps
     return view_page({viewed.name, {viewed}, std::move(lamps), false});
 }
 
+/// Functions that move a control and read a pixel.
+inline const std::string hands = R"js(
+  const drag = (id, value) => { const input = place(id); input.value = value; input.dispatchEvent(new Event('input')); };
+  const pick = (id, value) => { const input = place(id); input.value = value; input.dispatchEvent(new Event('change')); };
+  const shown = () => { drawNow(); return readingAt(states[modelAt(view.x)], view.x, view.y); };
+  const told = (found) => ({ wi: found.wi, wo: found.wo, radiance: [...found.radiance], light: [...found.lamp] });
+  const drawn = (x, y) => { const pixel = new Uint8Array(4); gl.readPixels(x - 0.5, SIZE - y - 0.5, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); return [...pixel].slice(0, 3); };
+  drag('radius', 0); drag('around', 0);
+)js";
+
 /// Opens pages in a browser; tests skip where there is none.
 class ShownPage : public ::testing::Test {
 protected:
