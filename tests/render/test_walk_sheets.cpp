@@ -104,15 +104,9 @@ TEST(WalkedSheets, LitFromBeneathTheyMatchTheDoublePrecisionWalk) {
 /// Two estimators of the same radiance: an environment that is found by chance, and one that is an
 /// image and looked for, and found too.
 TEST(WalkedSheets, LightsLookedForAndLightsFoundAgree) {
-    Image white;
-    white.width = 2;
-    white.height = 2;
-    white.rgb.assign(12, 1.0f);
-    EnvironmentLight image{Spectrum::constant(1.0)};
-    image.image = 0;
     for (const bool from_below : {false, true}) {
         const RenderResult found = render_sheets(sky, from_below, 64);
-        const RenderResult looked_for = render_sheets({{image}, {white}}, from_below, 64);
+        const RenderResult looked_for = render_sheets(sky_image(), from_below, 64);
         for (std::size_t m = 0; m < sheets().size(); ++m)
             for (const int band : {2, 7, 13}) {
                 const BandStatistics a = strip_statistics(found.image, static_cast<int>(m), band);

@@ -123,13 +123,7 @@ TEST(Walk, LightsLookedForAndLightsFoundAgree) {
     for (const Stack& stack : all_stacks())
         materials.push_back(over_fluorescent(stack.layers));
     const RenderResult found = render_strips(materials, sky, Model::Walk, 64);
-    Image white;
-    white.width = 2;
-    white.height = 2;
-    white.rgb.assign(12, 1.0f);
-    EnvironmentLight image{Spectrum::constant(1.0)};
-    image.image = 0;
-    const RenderResult looked_for = render_strips(materials, {{image}, {white}}, Model::Walk, 128);
+    const RenderResult looked_for = render_strips(materials, sky_image(), Model::Walk, 128);
     for (std::size_t m = 0; m < materials.size(); ++m)
         for (const int band : {2, 13}) {
             const BandStatistics a = strip_statistics(found.image, static_cast<int>(m), band);

@@ -165,6 +165,16 @@ inline RenderResult render_strips(const std::vector<Material>& materials, const 
 
 inline const Lighting sun = {{directional(35.0, 60.0, Spectrum::constant(1.0))}};
 inline const Lighting sky = {{environment(Spectrum::constant(1.0))}};
+/// The same sky as an image, which is looked for.
+inline Lighting sky_image() {
+    Image white;
+    white.width = 2;
+    white.height = 2;
+    white.rgb.assign(12, 1.0f);
+    EnvironmentLight image{Spectrum::constant(1.0)};
+    image.image = 0;
+    return {{image}, {white}};
+}
 /// About as bright as each other; the first area light stands where smooth stacks mirror it.
 inline const Lighting every_light = {
     {directional(35.0, 60.0, Spectrum::constant(1.0)), environment(Spectrum::constant(0.5)),
