@@ -173,7 +173,10 @@ TEST_F(DevelopAndProbe, ProbeAgreesWithMeasureWithinItsStandardError) {
     put("dye.csv", dye);
     put("scene.toml", patch_scene);
     const std::vector<double> expected = measured_radiance();
-    ASSERT_EQ(run("render scene.toml -o s.exr --spp 32 --variance bands --seed 3 --comb-phase centre").exit_code, 0);
+    ASSERT_EQ(
+        run("render scene.toml -o s.exr --spp 32 --variance bands --seed 3 --comb-phase centre")
+            .exit_code,
+        0);
     std::string regions;
     for (int y = 0; y < 16; y += 4)
         for (int x = 0; x < 16; x += 4)
