@@ -282,3 +282,12 @@ TEST(WeidlichWilkieParts, ResidualBelowALayerIsDimmedByIt) {
     sheet.flakes = smoothed(gold);
     EXPECT_NEAR(WeidlichWilkieResidual(stack_of({sheet}, perfect))(0.7), 0.25 * bare(0.7), 1e-12);
 }
+
+TEST(WeidlichWilkieResidual, IsNowhereNegativeBetweenItsNodes) {
+    for (const double alpha : {0.02, 0.05, 0.2}) {
+        const WeidlichWilkieResidual residual(
+            stack_of({{1.5, Distribution::Blinn, alpha, Scattering::Multiple, 0.0}}));
+        for (int k = 0; k <= 4000; ++k)
+            EXPECT_GE(residual(k / 4000.0), 0.0) << alpha << ", cosine " << k / 4000.0;
+    }
+}

@@ -95,7 +95,7 @@ public:
     bool has_top_lobe() const override { return top_rough_; }
     const std::vector<LobeShape>& deeper_lobes() const override { return lobes_; }
     double lobe_amplitude(int lobe, double c) const override {
-        return std::max(tables_.at(static_cast<std::size_t>(lobe)).amplitude(c), 0.0);
+        return tables_.at(static_cast<std::size_t>(lobe)).amplitude(c);
     }
     double residual(double c) const override {
         const double given_back = lost_flux_ ? lost_flux_->given_back(c) : 0.0;

@@ -33,8 +33,9 @@ double CosineTable::operator()(double cosine) const {
     const double slope0 = i > 0 ? 0.5 * (at(i + 1) - at(i - 1)) : at(1) - at(0);
     const double slope1 = i + 2 < nodes ? 0.5 * (at(i + 2) - at(i)) : at(i + 1) - at(i);
     const double rise = at(i + 1) - at(i);
-    return at(i) + t * (slope0 + t * ((3.0 * rise - 2.0 * slope0 - slope1) +
-                                      t * (slope0 + slope1 - 2.0 * rise)));
+    const double value = at(i) + t * (slope0 + t * ((3.0 * rise - 2.0 * slope0 - slope1) +
+                                                    t * (slope0 + slope1 - 2.0 * rise)));
+    return std::max(value, 0.0); // beside a kink a cubic dips below
 }
 
 namespace {

@@ -11,7 +11,7 @@
 
 namespace reradiant {
 
-/// A smooth function of the cosine, tabulated uniformly in sqrt(c), cubic between the nodes.
+/// A smooth function of the cosine, >= 0, tabulated uniformly in sqrt(c), cubic between the nodes.
 class CosineTable {
 public:
     static constexpr int nodes = 65;

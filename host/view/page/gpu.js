@@ -4,7 +4,7 @@ const FINE_NODES = 129; // linear in between, where NODES are cubic
 function fineTable(values) {
   return Float32Array.from({ length: FINE_NODES }, (_, k) => {
     const x = k / (FINE_NODES - 1);
-    return Math.max(0, lookUp(values, x * x)); // the renderer cuts what dips below zero off, too
+    return lookUp(values, x * x);
   });
 }
 function compiled(gl, type, source) {

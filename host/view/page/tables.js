@@ -106,7 +106,8 @@ function lookUp(values, cosine) {
   const low = i > 0 ? 0.5 * (values[i + 1] - values[i - 1]) : values[1] - values[0];
   const high = i + 2 < NODES ? 0.5 * (values[i + 2] - values[i]) : values[i + 1] - values[i];
   const rise = values[i + 1] - values[i];
-  return values[i] + t * (low + t * (3 * rise - 2 * low - high + t * (low + high - 2 * rise)));
+  // beside a kink a cubic dips below zero
+  return Math.max(values[i] + t * (low + t * (3 * rise - 2 * low - high + t * (low + high - 2 * rise))), 0);
 }
 // The residual over sqrt(pi times its mean): the product of two is its value.
 function residualTable(numbers, index) {
