@@ -9,19 +9,8 @@
 
 KERNELS_BEGIN
 
-/// Cosines are uniform in their square roots, from this one on.
-#define FACET_SHAPE_LEAST REAL(0.1)
-
 DEVICE_FUNCTION real facet_shape_node_cosine(uint node) {
-    return square(FACET_SHAPE_LEAST +
-                  (REAL(1.0) - FACET_SHAPE_LEAST) * ((real)node / (real)(SHAPE_COSINES - 1u)));
-}
-
-DEVICE_FUNCTION ShapePlace facet_shape_cosine(real cosine) {
-    const real x = sqrt(fmax(cosine, REAL(0.0)));
-    return shape_place((x - FACET_SHAPE_LEAST) *
-                           ((real)(SHAPE_COSINES - 1u) / (REAL(1.0) - FACET_SHAPE_LEAST)),
-                       SHAPE_COSINES);
+    return shape_node_cosine(node, SHAPE_COSINES);
 }
 
 /// Place of the half vector of two directions among those that their cosines allow: 0 where their
@@ -49,7 +38,8 @@ DEVICE_FUNCTION real facet_shape_value(GLOBAL_CONST shared_float* table, real al
                                        Vec3 wo) {
     const ShapePlace s =
         shape_place(facet_shape_slope(alpha, wi, wo) * (real)(SHAPE_PLACES - 1u), SHAPE_PLACES);
-    return shape_value(table, facet_shape_cosine(wi.z), facet_shape_cosine(wo.z), s);
+    return shape_value(table, shape_cosine(wi.z, SHAPE_COSINES), shape_cosine(wo.z, SHAPE_COSINES),
+                       s);
 }
 
 KERNELS_END

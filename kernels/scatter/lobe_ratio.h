@@ -15,26 +15,15 @@ KERNELS_BEGIN
 #define LOBE_RATIO_AZIMUTHS 9u
 #define LOBE_RATIO_SIZE (LOBE_RATIO_COSINES * LOBE_RATIO_SLOPES * LOBE_RATIO_AZIMUTHS)
 
-/// Cosines are uniform in their square roots, from this one on.
-#define LOBE_RATIO_LEAST REAL(0.1)
-
 DEVICE_FUNCTION real lobe_ratio_node_cosine(uint node) {
-    return square(LOBE_RATIO_LEAST +
-                  (REAL(1.0) - LOBE_RATIO_LEAST) * ((real)node / (real)(LOBE_RATIO_COSINES - 1u)));
-}
-
-DEVICE_FUNCTION ShapePlace lobe_ratio_cosine(real cosine) {
-    const real x = sqrt(fmax(cosine, REAL(0.0)));
-    return shape_place((x - LOBE_RATIO_LEAST) *
-                           ((real)(LOBE_RATIO_COSINES - 1u) / (REAL(1.0) - LOBE_RATIO_LEAST)),
-                       LOBE_RATIO_COSINES);
+    return shape_node_cosine(node, LOBE_RATIO_COSINES);
 }
 
 /// Largest slope of a half vector whose other direction lies above the horizon.
 DEVICE_FUNCTION real lobe_ratio_largest(real cosine) {
     // tan((theta + pi / 2) / 2) = (1 + sin) / cos
     return (REAL(1.0) + sqrt(fmax(REAL(1.0) - square(cosine), REAL(0.0)))) /
-           fmax(cosine, square(LOBE_RATIO_LEAST));
+           fmax(cosine, square(SHAPE_LEAST));
 }
 
 /// Slope of the half vector that is half way among the nodes where the largest one is far, over the
@@ -64,7 +53,7 @@ DEVICE_FUNCTION real lobe_ratio_value(GLOBAL_CONST shared_float* table, real wid
     const real along = own.x * sum.x + own.y * sum.y;
     const real u = fmin(slope / lobe_ratio_largest(own.z), REAL(1.0));
     const real k = lobe_ratio_middle(width, own.z);
-    const ShapePlace c = lobe_ratio_cosine(own.z);
+    const ShapePlace c = shape_cosine(own.z, LOBE_RATIO_COSINES);
     const ShapePlace s = shape_place(u * (REAL(1.0) + k) / (u + k) * (real)(LOBE_RATIO_SLOPES - 1u),
                                      LOBE_RATIO_SLOPES);
     const ShapePlace a =

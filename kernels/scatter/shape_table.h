@@ -28,6 +28,19 @@ DEVICE_FUNCTION ShapePlace shape_place(real position, uint nodes) {
     return place;
 }
 
+/// Nodes of cosine are uniform in their square roots, from this one on.
+#define SHAPE_LEAST REAL(0.1)
+
+DEVICE_FUNCTION real shape_node_cosine(uint node, uint nodes) {
+    return square(SHAPE_LEAST + (REAL(1.0) - SHAPE_LEAST) * ((real)node / (real)(nodes - 1u)));
+}
+
+/// Place of a cosine among so many nodes.
+DEVICE_FUNCTION ShapePlace shape_cosine(real cosine, uint nodes) {
+    const real x = sqrt(fmax(cosine, REAL(0.0)));
+    return shape_place((x - SHAPE_LEAST) * ((real)(nodes - 1u) / (REAL(1.0) - SHAPE_LEAST)), nodes);
+}
+
 /// Returns a value of a table, linear between its nodes.
 DEVICE_FUNCTION real shape_value(GLOBAL_CONST shared_float* table, ShapePlace i, ShapePlace o,
                                  ShapePlace s) {

@@ -262,9 +262,9 @@ DEVICE_FUNCTION real layer_stack_facets(LayerStackView stack, LobeRecord lobe, V
 #if FEATURE_DEEPER_LOBES
 DEVICE_FUNCTION real layer_stack_lobe_ratio(LayerStackView stack, LobeRecord lobe, Vec3 wi,
                                             Vec3 wo) {
-    GLOBAL_CONST shared_float* table = stack.tables + lobe.ratio;
     if (lobe.ratio == NO_INDEX)
         return REAL(1.0);
+    GLOBAL_CONST shared_float* table = stack.tables + lobe.ratio;
     return lobe_ratio_value(table, lobe.ratio_width, wi, wo) +
            lobe_ratio_value(table, lobe.ratio_width, wo, wi);
 }

@@ -51,7 +51,7 @@ static void shade_walk(const ShadeScene* scene, SurfacePoint point, MaterialReco
             const real selection = scene->lights[step->vertex.light].selection;
             walk.light_pdf = selection * sample.pdf;
             walk.light_cosine = fabs(wi.z);
-            walk.is_light_far = wi.z < 0.0f;
+            walk.is_light_far = FEATURE_SHEETS && wi.z < 0.0f;
             walk_light(walk.stack, wi, sample.weight / selection, &walk.random, arrivals);
         }
     }

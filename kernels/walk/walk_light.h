@@ -223,7 +223,7 @@ void walk_light(WalkStack stack, Vec3 wi, float fluence, WalkRandom* random,
                 WalkArrival* arrivals) {
     WalkPosition at = {wi, 0u, 1};
     WalkArrival light;
-    const int is_far = wi.z < 0.0f;
+    const int is_far = FEATURE_SHEETS && wi.z < 0.0f;
     if (is_far) {
         at.v = walk_mirrored(wi);
         at.medium = stack.count;

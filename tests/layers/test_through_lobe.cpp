@@ -25,23 +25,15 @@ struct Sheet {
     bool has_long_tails = true;
 };
 
-Layer face(double ior, double alpha, Distribution distribution, double absorption = 0.0) {
-    Layer layer;
-    layer.ior = Spectrum::constant(ior);
-    layer.alpha = alpha;
-    layer.distribution = distribution;
-    layer.absorption = Spectrum::constant(absorption);
-    return layer;
-}
-
 std::vector<Sheet> sheets() {
     using enum Distribution;
-    LayerStack laminated{{face(1.5, 0.25, Ggx), face(1.65, 0.0, Ggx)}, LowerFace{.alpha = 0.1}};
+    LayerStack laminated{{plain_layer(1.5, 0.25, Ggx), plain_layer(1.65, 0.0, Ggx)},
+                         LowerFace{.alpha = 0.1}};
     return {
-        {"ggx 0.3 and 0.2", {{face(1.5, 0.3, Ggx, 0.3)}, LowerFace{.alpha = 0.2}}},
-        {"ggx 0.5 on both", {{face(1.5, 0.5, Ggx)}, LowerFace{.alpha = 0.5}}},
-        {"frosted beneath", {{face(1.52, 0.0, Ggx)}, LowerFace{.alpha = 0.35}}},
-        {"beckmann 0.2 above", {{face(1.4, 0.2, Beckmann)}, LowerFace{}}, false},
+        {"ggx 0.3 and 0.2", {{plain_layer(1.5, 0.3, Ggx, 0.3)}, LowerFace{.alpha = 0.2}}},
+        {"ggx 0.5 on both", {{plain_layer(1.5, 0.5, Ggx)}, LowerFace{.alpha = 0.5}}},
+        {"frosted beneath", {{plain_layer(1.52, 0.0, Ggx)}, LowerFace{.alpha = 0.35}}},
+        {"beckmann 0.2 above", {{plain_layer(1.4, 0.2, Beckmann)}, LowerFace{}}, false},
         {"laminated", laminated},
     };
 }

@@ -22,6 +22,17 @@ inline LayerWalk walk_of(const LayerStack& stack,
                      slab_emissions(stack, three_bands));
 }
 
+/// A layer of one index, width and absorption at all wavelengths.
+inline Layer plain_layer(double ior, double alpha, Distribution distribution,
+                         double absorption = 0.0) {
+    Layer layer;
+    layer.ior = Spectrum::constant(ior);
+    layer.alpha = alpha;
+    layer.distribution = distribution;
+    layer.absorption = Spectrum::constant(absorption);
+    return layer;
+}
+
 /// Standard errors of all_light.
 inline Eigen::MatrixXd all_errors(WalkTally::Parts parts) {
     for_parts(parts, [](auto& part) { part = part.cwiseAbs2().eval(); });
