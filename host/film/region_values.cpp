@@ -105,6 +105,13 @@ double luminance_error(const RegionValues& values, const SpectralImage& image,
 
 } // namespace
 
+ValueRatio ratio_of(double above, double above_stderr, double below, double below_stderr) {
+    if (below == 0.0)
+        return {unknown, unknown};
+    const double value = above / below;
+    return {value, std::hypot(above_stderr / below, value * below_stderr / below)};
+}
+
 bool ImageRegion::holds(int x, int y) const {
     if (x < x0 || x > x1 || y < y0 || y > y1)
         return false;

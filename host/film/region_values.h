@@ -31,6 +31,12 @@ struct RegionValues {
     ErrorSource radiance_error = ErrorSource::Unknown, luminance_error = ErrorSource::Unknown;
 };
 
+/// One value over another, with the standard error where the two are independent.
+struct ValueRatio {
+    double value, standard_error; ///< NaN where what stands below is 0
+};
+ValueRatio ratio_of(double above, double above_stderr, double below, double below_stderr);
+
 /// Input Error, which says the image's size, for a region that reaches outside.
 RegionValues region_values(const SpectralImage& image, const ImageRegion& region);
 

@@ -16,6 +16,11 @@ namespace {
 /// When the colours are used up the lines change their dashes.
 constexpr std::array dashes = {"", "6 3", "2 3", "8 3 2 3"};
 
+/// Which colour and dashes a series has.
+std::size_t look_of(const std::vector<Series>& series, std::size_t place) {
+    return series[place].colour.value_or(place);
+}
+
 std::string dashes_of(std::size_t index) {
     const char* const pattern = dashes[index / series_colours % dashes.size()];
     return *pattern ? fmt::format(" stroke-dasharray=\"{}\"", pattern) : "";
@@ -133,26 +138,68 @@ std::string draw_points(const Frame& frame, const Axes& axes, const Series& seri
     return marks;
 }
 
+constexpr double row_height = 19;    // of the legend
+constexpr double below_frame = 52.0; // numbers and label of the x axis
+
+/// A sample of the series and its label; `y` is the middle of the row.
+std::string legend_entry(const Series& series, std::size_t look, double x, double y) {
+    std::string entry;
+    if (!series.low.empty())
+        entry += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"24\" height=\"11\" "
+                             "fill=\"{}\" fill-opacity=\"0.2\"/>\n",
+                             x, y - 5.5, series_colour(look));
+    entry += series.points ? mark(x + 12, y, look)
+                           : fmt::format("<path d=\"M{:.1f} {:.1f}h24\" stroke=\"{}\" "
+                                         "stroke-width=\"1.8\"{}/>\n",
+                                         x, y, series_colour(look), dashes_of(look));
+    return entry + text_at(x + 31, y + 4, "start", series.label);
+}
+
 std::string draw_legend(const Frame& frame, const std::vector<Series>& series) {
-    constexpr double row_height = 19;
-    const double left = frame.right() + 16;
     double y = frame.top + 8;
     std::string legend;
     for (std::size_t k = 0; k < series.size(); ++k) {
         if (series[k].label.empty())
             continue;
-        if (!series[k].low.empty())
-            legend += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"24\" height=\"11\" "
-                                  "fill=\"{}\" fill-opacity=\"0.2\"/>\n",
-                                  left, y - 5.5, series_colour(k));
-        legend += series[k].points ? mark(left + 12, y, k)
-                                   : fmt::format("<path d=\"M{:.1f} {:.1f}h24\" stroke=\"{}\" "
-                                                 "stroke-width=\"1.8\"{}/>\n",
-                                                 left, y, series_colour(k), dashes_of(k));
-        legend += text_at(left + 31, y + 4, "start", series[k].label);
+        legend += legend_entry(series[k], look_of(series, k), frame.right() + 16, y);
         y += row_height;
     }
     return legend;
+}
+
+/// 7 pixels a character are generous.
+double entry_width(const Series& series) {
+    return 44.0 + 7.0 * static_cast<double>(series.label.size());
+}
+
+/// Entries in rows from the upper left on, as many in each as fit; `bottom` is where they end.
+std::string draw_legend_above(const std::vector<Series>& series, double left, double right,
+                              double& bottom) {
+    std::string legend;
+    double x = left;
+    double y = 0.0;
+    for (std::size_t k = 0; k < series.size(); ++k) {
+        if (series[k].label.empty())
+            continue;
+        if (y == 0.0 || x + entry_width(series[k]) > right) {
+            x = left;
+            y += row_height;
+        }
+        legend += legend_entry(series[k], look_of(series, k), x, y - 0.5 * row_height);
+        x += entry_width(series[k]);
+    }
+    bottom = y;
+    return legend;
+}
+
+std::string draw_curves(const Frame& frame, const Axes& axes, const std::vector<Series>& series) {
+    std::string curves;
+    for (std::size_t k = 0; k < series.size(); ++k)
+        curves += draw_band(frame, axes, series[k], look_of(series, k));
+    for (std::size_t k = 0; k < series.size(); ++k)
+        curves += series[k].points ? draw_points(frame, axes, series[k], look_of(series, k))
+                                   : draw_line(frame, axes, series[k], look_of(series, k));
+    return curves;
 }
 
 /// Room that the legend takes, from the length of its texts (7 pixels a character is generous).
@@ -169,15 +216,25 @@ std::string line_plot(const Axes& axes, const std::vector<Series>& series) {
     for (const Series& one : series)
         check(one);
     Frame frame = frame_of(axes, series);
-    frame.height = std::max(frame.height, 19.0 * static_cast<double>(series.size()));
-    std::string content = draw_frame(frame, axes.title, axes.x_label, axes.y_label, true);
-    for (std::size_t k = 0; k < series.size(); ++k)
-        content += draw_band(frame, axes, series[k], k);
-    for (std::size_t k = 0; k < series.size(); ++k)
-        content += series[k].points ? draw_points(frame, axes, series[k], k)
-                                    : draw_line(frame, axes, series[k], k);
-    content += draw_legend(frame, series);
-    return document(frame.right() + legend_width(series), frame.bottom() + 52, content);
+    frame.height = std::max(frame.height, row_height * static_cast<double>(series.size()));
+    const std::string content = draw_frame(frame, axes.title, axes.x_label, axes.y_label, true) +
+                                draw_curves(frame, axes, series) + draw_legend(frame, series);
+    return document(frame.right() + legend_width(series), frame.bottom() + below_frame, content);
+}
+
+std::string line_plot_within(const Axes& axes, const std::vector<Series>& series, double width,
+                             double height) {
+    constexpr double right_margin = 16, smallest = 20;
+    for (const Series& one : series)
+        check(one);
+    Frame frame = frame_of(axes, series);
+    frame.width = std::max(smallest, width - frame.left - right_margin);
+    double legend_bottom = 0.0;
+    const std::string legend = draw_legend_above(series, frame.left, width, legend_bottom);
+    frame.top = legend_bottom + (axes.title.empty() ? 8.0 : 32.0);
+    frame.height = std::max(smallest, height - frame.top - below_frame);
+    return draw_frame(frame, axes.title, axes.x_label, axes.y_label, true) +
+           draw_curves(frame, axes, series) + legend;
 }
 
 } // namespace reradiant::svg

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct Series {
     std::vector<double> x, y;
     std::vector<double> low = {}, high = {}; ///< a band about y, as long as y, or empty
     bool points = false;                     ///< marks instead of a line
+    std::optional<std::size_t> colour = {};  ///< which series_colour; empty: by its place
 };
 
 struct Axes {
@@ -24,6 +26,11 @@ struct Axes {
 /// Curves over common axes, a legend beside them. The axes hold every value and every band.
 /// std::invalid_argument when the lengths of a series disagree.
 std::string line_plot(const Axes& axes, const std::vector<Series>& series);
+
+/// The same to be put into another drawing: no element around it, its texts 12 pixels high, the
+/// legend above the curves in as many rows as it takes. It fills `width` x `height` pixels.
+std::string line_plot_within(const Axes& axes, const std::vector<Series>& series, double width,
+                             double height);
 
 struct HeatMap {
     std::string title = {}, x_label = {}, y_label = {};

@@ -1,6 +1,6 @@
 #include "host/film/display/display_gamut.h"
-#include "reradiant/spectrum.h"
 #include "tests/film/film_fixtures.h"
+#include "tests/film/saturated_colours.h"
 
 #include <fmt/core.h>
 
@@ -8,87 +8,14 @@
 
 namespace reradiant {
 
+using namespace test;
+
 namespace {
-
-constexpr double degree = 3.14159265358979323846 / 180.0;
-
-Eigen::Matrix3d srgb_primaries() {
-    Eigen::Matrix3d columns;
-    for (int k = 0; k < 3; ++k) {
-        std::array<double, 3> rgb{0.0, 0.0, 0.0};
-        rgb[static_cast<std::size_t>(k)] = 1.0;
-        const Xyz xyz = linear_srgb_to_xyz(rgb);
-        columns.col(k) << xyz[0], xyz[1], xyz[2];
-    }
-    return columns;
-}
-
-const Xyz white = linear_srgb_to_xyz({1.0, 1.0, 1.0});
-
-Xyz clipped(const Xyz& xyz) {
-    auto rgb = xyz_to_linear_srgb(xyz);
-    for (double& value : rgb)
-        value = std::clamp(value, 0.0, 1.0);
-    return linear_srgb_to_xyz(rgb);
-}
-
-bool is_in_gamut(const Xyz& xyz, double tolerance = 1e-6) {
-    for (const double value : xyz_to_linear_srgb(xyz))
-        if (value < -tolerance || value > 1.0 + tolerance)
-            return false;
-    return true;
-}
-
-/// Hue angle of CIELAB in degrees, and the hue term of CIEDE2000 (Sharma, Wu and Dalal 2005,
-/// equations 7 to 15 and 20), between two colours.
-struct HueError {
-    double angle_deg, term;
-};
 
 /// Red to green by the hue of CIELAB, as most of what fluoresces looks.
 bool is_warm(const Xyz& xyz) {
-    const auto lab = xyz_to_lab(xyz, white);
+    const auto lab = xyz_to_lab(xyz, srgb_white());
     return lab[2] > 0.0;
-}
-
-HueError hue_error(const Xyz& xyz, const Xyz& other) {
-    const auto one = xyz_to_lab(xyz, white), two = xyz_to_lab(other, white);
-    const auto difference = [](double h1, double h2) {
-        return std::remainder(h2 - h1, 360.0 * degree);
-    };
-    const double angle =
-        difference(std::atan2(one[2], one[1]), std::atan2(two[2], two[1])) / degree;
-    const double mean = 0.5 * (std::hypot(one[1], one[2]) + std::hypot(two[1], two[2]));
-    const double stretch =
-        1.5 - 0.5 * std::sqrt(std::pow(mean, 7) / (std::pow(mean, 7) + std::pow(25.0, 7)));
-    const double c1 = std::hypot(stretch * one[1], one[2]),
-                 c2 = std::hypot(stretch * two[1], two[2]);
-    const double h1 = std::atan2(one[2], stretch * one[1]),
-                 h2 = std::atan2(two[2], stretch * two[1]);
-    const double h = h1 + 0.5 * difference(h1, h2);
-    const double t = 1.0 - 0.17 * std::cos(h - 30.0 * degree) + 0.24 * std::cos(2.0 * h) +
-                     0.32 * std::cos(3.0 * h + 6.0 * degree) -
-                     0.20 * std::cos(4.0 * h - 63.0 * degree);
-    const double delta = 2.0 * std::sqrt(c1 * c2) * std::sin(0.5 * difference(h1, h2));
-    return {std::abs(angle), std::abs(delta) / (1.0 + 0.0075 * (c1 + c2) * t)};
-}
-
-/// A thousand colours that sRGB does not hold: emission bands of dyes, 10 to 60 nm wide (full width
-/// at half the height is 24 to 141 nm), on a little white light.
-std::vector<Xyz> saturated_colours() {
-    std::mt19937 random(1);
-    std::uniform_real_distribution<double> peak_nm(420.0, 660.0), sigma_nm(10.0, 60.0),
-        luminance(0.02, 1.2), pale(0.0, 0.1);
-    std::vector<Xyz> colours;
-    while (colours.size() < 1000) {
-        Xyz xyz = xyz_of(Spectrum::gaussian(peak_nm(random), sigma_nm(random), 1.0));
-        const double scale = luminance(random) / xyz[1], added = pale(random);
-        for (std::size_t c = 0; c < 3; ++c)
-            xyz[c] = scale * xyz[c] + added * white[c];
-        if (!is_in_gamut(xyz, 1e-3))
-            colours.push_back(xyz);
-    }
-    return colours;
 }
 
 double mean(const std::vector<double>& values) {
@@ -111,8 +38,8 @@ TEST(DisplayGamut, SaturatedColoursKeepTheirHueAsClippingDoesNot) {
         warm_compress;
     for (const Xyz& colour : saturated_colours()) {
         const Xyz compressed = gamut.compressed(colour);
-        EXPECT_TRUE(is_in_gamut(compressed)) << colour[0] << " " << colour[1] << " " << colour[2];
-        const HueError clip = hue_error(colour, clipped(colour)),
+        EXPECT_TRUE(is_in_srgb(compressed)) << colour[0] << " " << colour[1] << " " << colour[2];
+        const HueError clip = hue_error(colour, clipped_to_srgb(colour)),
                        compress = hue_error(colour, compressed);
         angle_clip.push_back(clip.angle_deg);
         angle_compress.push_back(compress.angle_deg);
@@ -153,7 +80,8 @@ TEST(DisplayGamut, NeutralAxisIsUnchanged) {
     }
     const Xyz bright = gamut.compressed(linear_srgb_to_xyz({3.0, 3.0, 3.0}));
     for (std::size_t c = 0; c < 3; ++c)
-        EXPECT_NEAR(bright[c], white[c], 1e-6) << "brighter than white is white, as by clipping";
+        EXPECT_NEAR(bright[c], srgb_white()[c], 1e-6)
+            << "brighter than white is white, as by clipping";
 }
 
 TEST(DisplayGamut, ColoursWellInsideStayToTheBit) {
@@ -173,7 +101,7 @@ TEST(DisplayGamut, DetailThatClippingLosesStays) {
     double last_red = 0.0, last_green = 2.0;
     for (double outside = 1.1; outside < 2.0; outside += 0.1) {
         const Xyz xyz = linear_srgb_to_xyz({outside, 0.3 - 0.2 * outside, -0.1 * outside});
-        EXPECT_NEAR(xyz_to_linear_srgb(clipped(xyz))[0], 1.0, 1e-9);
+        EXPECT_NEAR(xyz_to_linear_srgb(clipped_to_srgb(xyz))[0], 1.0, 1e-9);
         const auto rgb = xyz_to_linear_srgb(gamut.compressed(xyz));
         EXPECT_TRUE(std::abs(rgb[0] - last_red) > 1e-4 || std::abs(rgb[1] - last_green) > 1e-4);
         last_red = rgb[0];

@@ -126,6 +126,8 @@ TEST_F(DevelopAndProbe, DevelopSaysWhatItChose) {
     EXPECT_NE(result.output.find("white x = 0."), std::string::npos) << result.output;
     EXPECT_EQ(run("develop halves.exr -o b.jpg --quiet").output, "");
     EXPECT_EQ(file_bytes(folder / "b.jpg").substr(0, 2), "\xff\xd8");
+    EXPECT_EQ(run("develop halves.exr -o b.tif --quiet").output, "");
+    EXPECT_EQ(file_bytes(folder / "b.tif").substr(0, 4), std::string("II*\0", 4));
     EXPECT_EQ(run("develop halves.exr -o c.png --json r.json").exit_code, 0);
     EXPECT_TRUE(Json::parse(file_bytes(folder / "r.json")).at("white_xy").is_null());
     EXPECT_EQ(Json::parse(file_bytes(folder / "r.json")).at("out_of_gamut"), 48);
@@ -162,7 +164,8 @@ TEST_F(DevelopAndProbe, BadDevelopingIsRefusedAndNothingWritten) {
     expect_failure(2, "develop halves.exr -o a.png --display Cinema", "Cinema");
     expect_failure(2, "develop halves.exr -o a.png --ocio missing.ocio", "missing.ocio");
     expect_failure(2, "develop halves.exr -o a.exr", "a.exr");
-    expect_failure(2, "develop halves.exr -o a.tif", "a.tif");
+    expect_failure(2, "develop halves.exr -o a.bmp", "a.bmp");
+    expect_failure(2, "develop halves.exr -o a.tif --display G2.6-P3-D65", "a.tif");
     expect_failure(2, "develop halves.exr -o a", "a");
     expect_failure(2, "develop halves.exr -o a.jpg --display G2.6-P3-D65", "a.jpg");
     expect_failure(2, "develop halves.exr -o halves.exr", "halves.exr");

@@ -49,7 +49,7 @@ int run_develop(const DevelopCommand& command, const CommandContext& context) {
     check_outputs(context.common,
                   {{.option = "-o",
                     .file = command.output,
-                    .endings = {".png", ".jpg", ".jpeg"},
+                    .endings = {".png", ".jpg", ".jpeg", ".tif", ".tiff"},
                     .ending_chooses = true}},
                   {command.input});
     check_develop(options);
@@ -69,7 +69,7 @@ void add_develop_command(Program& program, CommandContext& context) {
         "develop",
         "Makes a picture of a spectral image: exposure, white, gamut, without rendering");
     app.option("IMAGE", command->input, "spectral EXR").required();
-    app.option("-o,--output", command->output, "picture to write: .png or .jpg").required();
+    app.option("-o,--output", command->output, "picture to write: .png, .jpg or .tif").required();
     add_display_options(app, command->display);
     app.footer("Example: reradiant develop out.exr -o out.png --exposure auto --white A --gamut "
                "compress");

@@ -156,6 +156,7 @@ Json describe(const fs::path& file) {
     case FileKind::Layers:
     case FileKind::Recipe:
     case FileKind::Study:
+    case FileKind::Figure:
     case FileKind::Covariance:
     case FileKind::Measurement:
     case FileKind::Polygons:

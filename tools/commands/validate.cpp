@@ -20,6 +20,7 @@
 #include "reradiant/spectral_image.h"
 #include "reradiant/synth.h"
 #include "tools/commands/describe_material.h"
+#include "tools/commands/figure/figure_request.h"
 #include "tools/commands/print_tree.h"
 #include "tools/commands/reference.h"
 #include "tools/program/command.h"
@@ -152,6 +153,18 @@ Json validate_study(const fs::path& file) {
             {"cells", study.cell_count()}};
 }
 
+Json validate_figure(const fs::path& file) {
+    const FigureRequest figure = read_figure_request(file);
+    std::size_t marks = 0;
+    for (const ImageRequest& image : figure.images)
+        marks += image.marks.size();
+    return {{"kind", "figure"},
+            {"images", figure.images.size()},
+            {"plots", figure.plots.size()},
+            {"swatches", figure.swatches.size()},
+            {"marks", marks}};
+}
+
 Json validate_measurement(const fs::path& file) {
     const BispectralData data = read_bispectral_data(file);
     return {{"kind", "measurement"},
@@ -205,6 +218,8 @@ Json validate(const fs::path& file) {
         return validate_recipe(file);
     case FileKind::Study:
         return validate_study(file);
+    case FileKind::Figure:
+        return validate_figure(file);
     case FileKind::Matrix:
         return validate_matrix(file);
     case FileKind::Covariance:
@@ -241,7 +256,7 @@ void add_validate_command(Program& program, CommandContext& context) {
     Command what = command.one_of_group("what");
     what.option(
         "FILE", options->file,
-        "scene, material, layers, recipe or study (TOML, XML), matrix (CSV, BFC, EXR), "
+        "scene, material, layers, recipe, study or figure (TOML, XML), matrix (CSV, BFC, EXR), "
         "covariance, measurement, spectrum (also JCAMP-DX, CGATS, IES TM-27), polygons, mesh (PLY, "
         "OBJ), image (EXR, PNG) or OpenColorIO config (.ocio)");
     what.flag("--reference", options->reference,

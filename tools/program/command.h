@@ -46,6 +46,7 @@ void add_compare_command(Program& program, CommandContext& context);
 void add_converge_command(Program& program, CommandContext& context);
 void add_develop_command(Program& program, CommandContext& context);
 void add_probe_command(Program& program, CommandContext& context);
+void add_figure_command(Program& program, CommandContext& context);
 void add_study_command(Program& program, CommandContext& context);
 void add_view_command(Program& program, CommandContext& context);
 void add_merge_command(Program& program, CommandContext& context);

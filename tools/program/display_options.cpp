@@ -39,17 +39,6 @@ std::optional<std::array<double, 2>> pair_of_numbers(const std::string& text) {
     return std::array<double, 2>{*x, *y};
 }
 
-void read_white(const std::string& text, DevelopOptions& options) {
-    options.auto_white = text == "auto";
-    if (text == "auto" || text == "D65")
-        return;
-    options.white_xy = pair_of_numbers(text);
-    if (!options.white_xy) {
-        const Lamp lamp = white_lamp("--white", text);
-        options.white_xy = chromaticity(xyz_of(lamp.weighted_by ? *lamp.weighted_by : lamp.light));
-    }
-}
-
 void read_exposure(const std::string& text, DevelopOptions& options) {
     options.auto_exposure = text == "auto";
     if (options.auto_exposure)
@@ -63,6 +52,18 @@ void read_exposure(const std::string& text, DevelopOptions& options) {
 
 } // namespace
 
+void set_white(const char* option, const std::string& text, DevelopOptions& options) {
+    options.auto_white = text == "auto";
+    options.white_xy.reset();
+    if (text == "auto" || text == "D65")
+        return;
+    options.white_xy = pair_of_numbers(text);
+    if (!options.white_xy) {
+        const Lamp lamp = white_lamp(option, text);
+        options.white_xy = chromaticity(xyz_of(lamp.weighted_by ? *lamp.weighted_by : lamp.light));
+    }
+}
+
 Lamp white_lamp(const char* option, const std::string& text) {
     std::error_code ignored;
     Lamp lamp;
@@ -75,6 +76,15 @@ Lamp white_lamp(const char* option, const std::string& text) {
     if (const std::string faint = faint_white_warning(lamp, Observer::Cie1931Deg2); !faint.empty())
         throw_input_error({}, fmt::format("{}: {}", option, faint));
     return lamp;
+}
+
+Xyz white_of_lamp(const char* option, const std::string& text, double luminance) {
+    const Lamp lamp = white_lamp(option, text);
+    Xyz white = xyz_of(lamp.weighted_by ? *lamp.weighted_by : lamp.light);
+    const double scale = luminance / white[1];
+    for (double& value : white)
+        value *= scale;
+    return white;
 }
 
 void add_display_options(Command& command, DisplayTexts& texts) {
@@ -101,7 +111,7 @@ DevelopOptions parse_display_options(const DisplayTexts& texts) {
     options.display.display = texts.display;
     options.display.view = texts.view;
     read_exposure(texts.exposure, options);
-    read_white(texts.white, options);
+    set_white("--white", texts.white, options);
     options.gamut = texts.gamut == "compress" ? Gamut::Compress : Gamut::Clip;
     return options;
 }

@@ -38,6 +38,8 @@ FileKind kind_of_toml(const fs::path& file) {
     const toml::table table = read_scene_table(file);
     if (table.contains("study") || table.contains("sweep"))
         return FileKind::Study;
+    if (table.contains("figure") || table.contains("image"))
+        return FileKind::Figure;
     if (table.contains("fluorophore") || table.contains("emission_nm"))
         return FileKind::Recipe;
     const toml::table* const material = table["material"].as_table();

@@ -10,6 +10,7 @@ enum class FileKind {
     Layers, ///< a material without a substrate, as `fit --stack` takes it
     Recipe, ///< the input of `synth`
     Study,
+    Figure,
     Matrix,
     Covariance,  ///< of a matrix: the CSV of `fit --covariance`
     Measurement, ///< the CSV of `measure`

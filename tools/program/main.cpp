@@ -33,6 +33,7 @@ void add_commands(Program& program, CommandContext& context) {
     add_merge_command(program, context);
     add_develop_command(program, context);
     add_probe_command(program, context);
+    add_figure_command(program, context);
     add_validate_command(program, context);
     add_info_command(program, context);
     add_classify_command(program, context);

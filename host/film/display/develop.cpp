@@ -9,6 +9,7 @@
 #include "host/film/display/jpeg.h"
 #include "host/film/display/picture_levels.h"
 #include "host/film/display/png.h"
+#include "host/film/display/tiff.h"
 #include "host/spectral/colour/bradford.h"
 #include "reradiant/error.h"
 
@@ -159,15 +160,18 @@ Picture develop(const SpectralImage& image, const DevelopOptions& options) {
 
 void write_picture(const std::filesystem::path& file, const Picture& picture) {
     const std::string ending = lower_case_ending(file);
-    if (ending != ".jpg" && ending != ".jpeg") {
+    const bool is_tiff = ending == ".tif" || ending == ".tiff";
+    if (ending != ".jpg" && ending != ".jpeg" && !is_tiff) {
         write_png(file, picture.width, picture.height, picture.rgb, picture.encoding);
         return;
     }
     if (!picture.encoding.is_srgb)
         throw_input_error({file.string()},
-                          "a JPEG says nothing of its colours, so that readers take them for sRGB",
+                          fmt::format("a {} says nothing of its colours, so that readers take "
+                                      "them for sRGB",
+                                      is_tiff ? "TIFF" : "JPEG"),
                           "name a .png here, or leave the display to sRGB");
-    write_jpeg(file, picture.width, picture.height, picture.rgb);
+    (is_tiff ? write_tiff : write_jpeg)(file, picture.width, picture.height, picture.rgb);
 }
 
 } // namespace reradiant

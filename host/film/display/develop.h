@@ -62,8 +62,8 @@ Picture develop(const SpectralImage& image, const DevelopOptions& options);
 /// Refuses, before there is an image, what `develop` would refuse.
 void check_develop(const DevelopOptions& options);
 
-/// Writes a picture: a JPEG where the file's ending is .jpg or .jpeg, which are for sRGB displays
-/// alone (input Error else), a PNG otherwise. Atomic.
+/// Writes a picture: a JPEG where the file's ending is .jpg or .jpeg, a TIFF where it is .tif or
+/// .tiff, both for sRGB displays alone (input Error else), a PNG otherwise. Atomic.
 void write_picture(const std::filesystem::path& file, const Picture& picture);
 
 } // namespace reradiant

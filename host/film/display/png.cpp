@@ -7,6 +7,7 @@
 
 #include <new>
 #include <string>
+#include <utility>
 
 namespace reradiant {
 
@@ -91,8 +92,8 @@ bool write(Writer& writer, png_uint_32 width, png_uint_32 height, png_const_byte
 
 } // namespace
 
-void write_png(const std::filesystem::path& file, int width, int height,
-               const std::vector<std::uint8_t>& rgb, const PictureEncoding& encoding) {
+std::string png_bytes(int width, int height, const std::vector<std::uint8_t>& rgb,
+                      const PictureEncoding& encoding) {
     Writer writer;
     writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
     writer.info = writer.png ? png_create_info_struct(writer.png) : nullptr;
@@ -100,8 +101,13 @@ void write_png(const std::filesystem::path& file, int width, int height,
         throw std::bad_alloc();
     if (!write(writer, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height),
                rgb.data(), encoding))
-        throw_runtime_error("cannot write " + file.string() + ": " + writer.message);
-    write_text_atomically(file, writer.bytes);
+        throw_runtime_error("a PNG cannot be made: " + writer.message);
+    return std::move(writer.bytes);
+}
+
+void write_png(const std::filesystem::path& file, int width, int height,
+               const std::vector<std::uint8_t>& rgb, const PictureEncoding& encoding) {
+    write_text_atomically(file, png_bytes(width, height, rgb, encoding));
 }
 
 void write_png(const std::filesystem::path& file, int width, int height,

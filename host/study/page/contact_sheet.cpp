@@ -1,40 +1,43 @@
 #include "host/study/page/contact_sheet.h"
 
+#include "host/figure/figure.h"
+#include "host/figure/svg_drawing.h"
 #include "host/film/display/display_picture.h"
-#include "host/film/display/png.h"
 
-#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <variant>
 
 namespace reradiant {
 
 namespace {
 
-constexpr int gap = 4;
-constexpr std::uint8_t grey = 128;
-/// Wider cells are shown at every second, third, ... pixel.
-constexpr int widest_cell = 512;
+// Points of the drawing are pixels of the sheet.
+constexpr double pixels_per_inch = 72.0;
+constexpr double font_size = 11.0, gap = 8.0;
+constexpr double narrowest_cell = 128.0; ///< so that there is room for its title
+constexpr double widest_cell = 512.0;
 
-/// The sheet while it is filled, (height, width, 3).
-struct Sheet {
-    int cell_width, cell_height, width, height;
-    std::vector<std::uint8_t> rgb;
+/// Width of a cell on the sheet: its image's own, times or over a whole number.
+double cell_width(int image_width) {
+    double width = image_width;
+    if (width < narrowest_cell)
+        width *= std::ceil(narrowest_cell / width);
+    if (width > widest_cell)
+        width /= std::ceil(width / widest_cell);
+    return width;
+}
 
-    Sheet(const SheetLayout& layout, int cell_width_, int cell_height_)
-        : cell_width(cell_width_), cell_height(cell_height_),
-          width(static_cast<int>(layout.columns) * (cell_width + gap) + gap),
-          height(static_cast<int>(layout.rows) * (cell_height + gap) + gap),
-          rgb(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), grey) {}
-
-    void put(std::size_t row, std::size_t column, const std::vector<std::uint8_t>& cell,
-             int full_width, int step) {
-        const int left = gap + static_cast<int>(column) * (cell_width + gap);
-        const int top = gap + static_cast<int>(row) * (cell_height + gap);
-        for (int y = 0; y < cell_height; ++y)
-            for (int x = 0; x < cell_width; ++x)
-                std::copy_n(cell.begin() + 3 * (y * step * full_width + x * step), 3,
-                            rgb.begin() + 3 * ((top + y) * width + left + x));
-    }
-};
+/// Writes the picture of a cell anew at the exposure of all.
+Picture developed(const CellResult& cell, double exposure_ev) {
+    DisplayOptions display;
+    display.exposure_ev = exposure_ev;
+    Picture picture = display_picture(read_spectral_exr(cell.folder / "image.exr"), display);
+    write_picture(cell.folder / "image.png", picture);
+    return picture;
+}
 
 } // namespace
 
@@ -49,26 +52,30 @@ SheetLayout sheet_layout(const Study& study) {
 void write_contact_sheet(const std::filesystem::path& file, const Study& study,
                          const StudyResult& result) {
     const SheetLayout layout = sheet_layout(study);
-    std::optional<Sheet> sheet;
+    Figure sheet;
+    sheet.font_size = font_size;
+    sheet.gap = sheet.margin = gap;
+    sheet.has_letters = false;
+    sheet.rows.assign(layout.rows, std::vector<FigurePanel>(
+                                       layout.columns, FigurePanel{"", EmptyPanel{"not done"}}));
+    const Picture* first = nullptr;
     for (const CellResult& cell : result.cells) {
+        FigurePanel& panel = sheet.rows[cell.index / layout.columns][cell.index % layout.columns];
+        panel.title = fmt::format("{}", fmt::join(cell_values(study, cell), "\n"));
+        panel.content = EmptyPanel{"failed"};
         if (!cell.has_image || cell.failed())
             continue;
-        const SpectralImage image = read_spectral_exr(cell.folder / "image.exr");
-        DisplayOptions display;
-        display.exposure_ev = result.exposure_ev;
-        const Picture picture = display_picture(image, display);
-        write_picture(cell.folder / "image.png", picture);
-        const int step = (image.width + widest_cell - 1) / widest_cell;
-        const int width = image.width / step, height = std::max(1, image.height / step);
-        if (!sheet)
-            sheet.emplace(layout, width, height);
-        if (width != sheet->cell_width || height != sheet->cell_height)
-            continue; // a swept film size: the sheet shows the first
-        sheet->put(cell.index / layout.columns, cell.index % layout.columns, picture.rgb,
-                   image.width, step);
+        panel.content = PicturePanel{.picture = developed(cell, result.exposure_ev)};
+        first = first ? first : &std::get<PicturePanel>(panel.content).picture;
     }
-    if (sheet)
-        write_png(file, sheet->width, sheet->height, sheet->rgb, true);
+    if (!first)
+        return;
+    for (auto& row : sheet.rows)
+        for (FigurePanel& panel : row)
+            if (std::holds_alternative<EmptyPanel>(panel.content))
+                panel.aspect = static_cast<double>(first->width) / first->height;
+    sheet.width = static_cast<double>(layout.columns) * (cell_width(first->width) + gap) - gap;
+    write_picture(file, picture_of_svg(figure_svg(sheet), pixels_per_inch));
 }
 
 } // namespace reradiant

@@ -12,9 +12,10 @@ struct SheetLayout {
 };
 SheetLayout sheet_layout(const Study& study);
 
-/// Pictures of all cells side by side at the result's exposure, 4 grey pixels between them; cells
-/// that failed stay grey. The cells' own pictures, image.png, are written anew at it: what it is,
-/// only all cells together tell. Writes nothing when no cell has an image.
+/// Pictures of all cells side by side at the result's exposure, beneath the values that were swept;
+/// cells that failed, or were not done, are grey and say so. The cells' own pictures, image.png,
+/// are written anew at it: what it is, only all cells together tell. Writes nothing when no cell
+/// has an image.
 void write_contact_sheet(const std::filesystem::path& file, const Study& study,
                          const StudyResult& result);
 

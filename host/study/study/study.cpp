@@ -236,13 +236,17 @@ private:
 
 } // namespace
 
-std::string cell_name(const Study& study, const CellResult& cell) {
+std::vector<std::string> cell_values(const Study& study, const CellResult& cell) {
     std::vector<std::string> parts;
     const std::vector<std::size_t> indices = study.cell_values(cell.index);
     for (std::size_t k = 0; k < study.sweeps.size(); ++k)
         parts.push_back(fmt::format("{} = {}", study.sweeps[k].label,
                                     study.sweeps[k].values[indices[k]].shown));
-    return fmt::format("{}", fmt::join(parts, ", "));
+    return parts;
+}
+
+std::string cell_name(const Study& study, const CellResult& cell) {
+    return fmt::format("{}", fmt::join(cell_values(study, cell), ", "));
 }
 
 StudyResult run_study(const Study& study, const Device* device, const StudyOptions& options,

@@ -52,6 +52,8 @@ struct StudyResult {
 StudyResult run_study(const Study& study, const Device* device, const StudyOptions& options,
                       const StudyProgress& progress);
 
+/// What a cell has of each sweep: "thickness = 0.5 units", "roughness = 10 deg".
+std::vector<std::string> cell_values(const Study& study, const CellResult& cell);
 /// "thickness = 0.5 units, roughness = 10 deg"
 std::string cell_name(const Study& study, const CellResult& cell);
 

@@ -32,6 +32,8 @@ const char* other_kind(FileKind kind) {
     switch (kind) {
     case FileKind::Study:
         return "a study";
+    case FileKind::Figure:
+        return "a figure";
     case FileKind::Recipe:
         return "a recipe of `synth`";
     case FileKind::Layers:

@@ -23,16 +23,6 @@ struct ProbeCommand {
     double white_luminance = 1.0;
 };
 
-/// The lamp's colour at the luminance of the white that Lab is relative to.
-Xyz white_of(const ProbeCommand& command) {
-    const Lamp lamp = white_lamp("--lamp", command.lamp);
-    Xyz white = xyz_of(lamp.weighted_by ? *lamp.weighted_by : lamp.light);
-    const double scale = command.white_luminance / white[1];
-    for (double& value : white)
-        value *= scale;
-    return white;
-}
-
 /// Errors of a place name the image.
 ProbedImage probe_file(const ProbeCommand& command, const std::vector<ImageRegion>& places,
                        const Xyz& white) {
@@ -46,7 +36,7 @@ ProbedImage probe_file(const ProbeCommand& command, const std::vector<ImageRegio
 
 int run_probe(const ProbeCommand& command, const CommandContext& context) {
     const std::vector<ImageRegion> places = probe_places(command.at, command.regions);
-    const Xyz white = white_of(command);
+    const Xyz white = white_of_lamp("--lamp", command.lamp, command.white_luminance);
     check_outputs(context.common,
                   {{"-o", command.csv, {".csv"}}, {"--plot", command.plot, {".svg"}}},
                   {command.image, command.lamp});

@@ -12,26 +12,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Ratio {
-    double value, standard_error;
-};
-
-Ratio ratio_of(double above, double above_stderr, double below, double below_stderr) {
-    if (below == 0.0)
-        return {std::nan(""), std::nan("")};
-    const double value = above / below;
-    return {value, std::hypot(above_stderr / below, value * below_stderr / below)};
-}
-
 void compare(ProbedPlace& place, const ProbedPlace& first) {
     const RegionValues &here = place.values, &there = first.values;
     for (std::size_t band = 0; band < here.radiance.size(); ++band) {
-        const Ratio ratio = ratio_of(here.radiance[band], here.radiance_stderr[band],
-                                     there.radiance[band], there.radiance_stderr[band]);
+        const ValueRatio ratio = ratio_of(here.radiance[band], here.radiance_stderr[band],
+                                          there.radiance[band], there.radiance_stderr[band]);
         place.ratio.push_back(ratio.value);
         place.ratio_stderr.push_back(ratio.standard_error);
     }
-    const Ratio luminance =
+    const ValueRatio luminance =
         ratio_of(here.xyz[1], here.luminance_stderr, there.xyz[1], there.luminance_stderr);
     place.luminance_ratio = luminance.value;
     place.luminance_ratio_stderr = luminance.standard_error;
