@@ -15,7 +15,8 @@ float16 reradiation_exclusive_sum(float16 v, float* total) {
                    s.sb, s.sc, s.sd);
     s += (float16)(0.0f, 0.0f, 0.0f, 0.0f, s.s0, s.s1, s.s2, s.s3, s.s4, s.s5, s.s6, s.s7, s.s8,
                    s.s9, s.sa, s.sb);
-    s += (float16)((float8)(0.0f), s.lo);
+    s += (float16)(0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, s.s0, s.s1, s.s2, s.s3, s.s4,
+                   s.s5, s.s6, s.s7);
     *total = s.sf;
     return (float16)(0.0f, s.s0, s.s1, s.s2, s.s3, s.s4, s.s5, s.s6, s.s7, s.s8, s.s9, s.sa, s.sb,
                      s.sc, s.sd, s.se);
