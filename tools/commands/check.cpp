@@ -1,4 +1,5 @@
 #include "host/check/check.h"
+#include "host/device/device_checks.h"
 #include "host/report/json_file.h"
 #include "tools/program/command.h"
 #include "tools/program/outputs.h"
@@ -83,6 +84,8 @@ int run_check(const CheckCommandOptions& options, const CommonOptions& common) {
     CheckReport report = check_device(device, options.check, [&](const FunctionReport& function) {
         print_row(function, in_double);
     });
+    if (options.check.only.empty())
+        remember_device_check(device.info(), report.passed());
     if (saved)
         compare_results(*saved, report);
     if (!options.save.empty())

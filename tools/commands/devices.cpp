@@ -1,4 +1,5 @@
 #include "host/base/logging.h"
+#include "host/device/device_checks.h"
 #include "host/device/driver_list.h"
 #include "host/report/json_file.h"
 #include "reradiant/device.h"
@@ -23,7 +24,8 @@ nlohmann::ordered_json to_json(const DeviceInfo& device) {
             {"max_allocation_bytes", device.max_allocation_bytes},
             {"local_memory_bytes", device.local_memory_bytes},
             {"max_work_group", device.max_work_group},
-            {"double", device.has_double}};
+            {"double", device.has_double},
+            {"check", device_check_text(device_check(device))}};
 }
 
 int run_devices(const CommonOptions& common) {
@@ -33,10 +35,11 @@ int run_devices(const CommonOptions& common) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const DeviceInfo& device : devices) {
         list.push_back(to_json(device));
-        fmt::print("{}: {} ({}, {}, {} units, {:.1f} GiB, {})\n", device.index, device.name,
+        fmt::print("{}: {} ({}, {}, {} units, {:.1f} GiB, {}; {})\n", device.index, device.name,
                    device.platform, device.type, device.compute_units,
                    static_cast<double>(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0),
-                   device.has_double ? "double" : "no double");
+                   device.has_double ? "double" : "no double",
+                   device_check_text(device_check(device)));
     }
     if (devices.empty())
         Device("0"); // throws the error that says what to install
@@ -53,7 +56,8 @@ int run_devices(const CommonOptions& common) {
 } // namespace
 
 void add_devices_command(Program& program, CommandContext& context) {
-    Command command = program.add_command("devices", "lists the OpenCL devices");
+    Command command = program.add_command(
+        "devices", "Lists the OpenCL devices, and whether `check` passed on them");
     command.footer("Example: reradiant devices --json devices.json");
     command.callback([&context] { context.exit_code = run_devices(context.common); });
 }

@@ -1,5 +1,6 @@
 #include "reradiant/render.h"
 #include "host/base/logging.h"
+#include "host/device/device_checks.h"
 #include "host/film/display/display_picture.h"
 #include "host/render/checkpoint/render_identity.h"
 #include "host/render/film/render_statistics.h"
@@ -204,6 +205,9 @@ int run_render(RenderCommand command, const CommandContext& context) {
                        command.output.string(), command.render.samples);
         return 0;
     }
+    if (!team || team->leads())
+        if (const std::string warning = unchecked_device_warning(device.info()); !warning.empty())
+            logging::warn("{}", warning);
     RenderResult result = render_image(command, common, scene, device, team.get());
     if (team && !team->leads())
         return 0;
