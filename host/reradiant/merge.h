@@ -1,5 +1,6 @@
 #pragma once
 
+#include "reradiant/light_layers.h"
 #include "reradiant/spectral_image.h"
 
 #include <cstdint>
@@ -35,7 +36,8 @@ std::string identity_text(const SampleIdentity& identity);
 
 struct MergedImage {
     SpectralImage image;
-    std::vector<SampleRange> gaps; ///< between the first and the last sample
+    std::vector<LightLayer> light_layers; ///< where the parts hold them
+    std::vector<SampleRange> gaps;        ///< between the first and the last sample
 };
 
 /// The mean over all samples of partial renders of one scene: values weighted by each pixel's
