@@ -103,6 +103,15 @@ std::vector<double> factors_of(const fs::path& file, const std::vector<LightLaye
 
 } // namespace
 
+std::vector<double> lamp_cell_means(const Spectrum& lamp) {
+    std::vector<double> means;
+    for (int cell = 0; cell < lamp_cells; ++cell) {
+        const double centre = lamp_from_nm + cell;
+        means.push_back(lamp.average(centre - 0.5, centre + 0.5));
+    }
+    return means;
+}
+
 std::string LightLayer::name() const {
     return part == LightPart::Whole         ? group
            : part == LightPart::Ultraviolet ? group + ".uv"

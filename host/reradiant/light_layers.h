@@ -1,6 +1,7 @@
 #pragma once
 
 #include "reradiant/spectral_image.h"
+#include "reradiant/spectrum.h"
 
 #include <filesystem>
 #include <functional>
@@ -30,8 +31,10 @@ struct LightLayer {
     std::string name() const;
 };
 
-/// Cells of 1 nm that lamps are kept on, from centre to centre.
+/// Cells of 1 nm that lamps are kept on; their centres begin at lamp_from_nm.
 constexpr int lamp_from_nm = 280, lamp_cells = 561;
+/// Means of a lamp over these cells.
+std::vector<double> lamp_cell_means(const Spectrum& lamp);
 
 /// Writes an image as write_spectral_exr does, and its layers as parts of their own behind it,
 /// which readers of spectral images pass over.

@@ -43,21 +43,12 @@ std::vector<LightGroup> light_groups(const Scene& scene) {
     return groups;
 }
 
-std::vector<double> lamp_of(const Light& light) {
-    std::vector<double> means;
-    for (int cell = 0; cell < lamp_cells; ++cell) {
-        const double centre = lamp_from_nm + cell;
-        means.push_back(light_spectrum(light).average(centre - 0.5, centre + 0.5));
-    }
-    return means;
-}
-
 /// The spectrum that the lights share, if they differ by a factor at most.
 std::vector<double> shared_lamp(const Scene& scene, const LightGroup& group) {
     constexpr double tolerance = 1e-6; ///< of the largest value
     std::vector<double> shared;
     for (const std::size_t i : group.lights) {
-        std::vector<double> lamp = lamp_of(scene.lights[i]);
+        std::vector<double> lamp = lamp_cell_means(light_spectrum(scene.lights[i]));
         const double largest = *std::max_element(lamp.begin(), lamp.end());
         if (!(largest > 0.0))
             continue;
