@@ -5,6 +5,7 @@ namespace reradiant {
 /// Sources of the page and of shader files, which host/view/page holds as files of their own.
 extern const char* const view_html;
 extern const char* const view_css;
+extern const char* const view_start_js;
 extern const char* const view_tables_js;
 extern const char* const view_optics_js;
 extern const char* const view_models_js;

@@ -1,11 +1,9 @@
 #include "host/view/lights/layer_code.h"
 
-#include "host/report/data_uri.h"
 #include "host/spectral/matrix/singular_values.h"
-#include "reradiant/error.h"
+#include "host/view/packed_text.h"
 
 #include <tbb/parallel_for.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -138,17 +136,6 @@ void append_differences(std::span<const Number> numbers, std::string& bytes) {
     }
 }
 
-std::string deflated(const std::string& bytes) {
-    uLongf size = compressBound(static_cast<uLong>(bytes.size()));
-    std::string packed(size, '\0');
-    if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
-                  reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()),
-                  Z_BEST_COMPRESSION) != Z_OK)
-        throw_runtime_error("the layers of a picture could not be packed");
-    packed.resize(size);
-    return packed;
-}
-
 } // namespace
 
 std::vector<double> LayerCode::spectrum(std::size_t pixel) const {
@@ -182,7 +169,7 @@ std::string packed(const LayerCode& code) {
     const std::span<const std::int16_t> directions = code.directions;
     for (std::size_t k = 0; k < static_cast<std::size_t>(code.rank); ++k)
         append_differences(directions.subspan(k * code.lengths.size(), code.lengths.size()), bytes);
-    return base64(deflated(bytes));
+    return packed_text(bytes);
 }
 
 } // namespace reradiant

@@ -1,19 +1,13 @@
 // A picture whose lights are turned up and down: it is the sum of its layers, which are unpacked when the page opens.
 const data = JSON.parse(document.getElementById('lights-data').textContent);
-const lamps = data.lamps.map((lamp) => ({ name: lamp.name, values: decode(lamp.values, Float32Array) }));
-const film = { bands: data.bands, weights: decode(data.weights, Float32Array) };
+const lamps = data.lamps.map((lamp) => ({ name: lamp.name, values: decodeFloats(lamp.values) }));
+const film = { bands: data.bands, weights: decodeFloats(data.weights) };
 const PIXELS = data.width * data.height,
   BANDS = data.bands.count;
 const view = { exposure: data.exposure, x: data.width >> 1, y: data.height >> 1 };
 // gain: of the slider; lamp: index into `lamps` in place of the render's own, or -1; shown: linear sRGB, unexposed.
 let layers = [];
 
-async function inflated(text) {
-  if (typeof DecompressionStream === 'undefined')
-    throw new Error('This browser cannot unpack the picture; current Firefox, Chrome, Edge and Safari can.');
-  const stream = new Blob([decode(text, Uint8Array)]).stream().pipeThrough(new DecompressionStream('deflate'));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
 // Numbers from their differences: high bytes, then low bytes, with the sign in the lowest bit.
 function numbersFrom(bytes, at, count, Type) {
   const numbers = new Type(count);
@@ -28,7 +22,7 @@ function numbersFrom(bytes, at, count, Type) {
 async function unpackCode(code) {
   const bytes = await inflated(code.packed);
   code.packed = null;
-  code.basis = decode(code.basis, Float32Array);
+  code.basis = decodeFloats(code.basis);
   const codes = numbersFrom(bytes, 0, PIXELS, Uint16Array);
   code.lengths = Float32Array.from(codes, (c) =>
     c === 0 ? 0 : Math.exp(code.low + (c - 1) * data.lengthStep) * data.directionStep,
@@ -40,7 +34,7 @@ async function unpackCode(code) {
 async function unpackLayers() {
   for (const layer of data.layers) {
     for (const code of layer.codes) await unpackCode(code);
-    const values = decode(layer.lamp, Float32Array);
+    const values = decodeFloats(layer.lamp);
     Object.assign(layer, { gain: 1, lamp: -1, own: values.length ? { name: '', values } : null, shown: null });
   }
   layers = data.layers;
@@ -322,7 +316,7 @@ canvas.onkeydown = (event) => {
 canvas.setAttribute('aria-label', 'Picture of ' + data.name);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
 said('unpacking');
-const ready = attempt(async () => {
+window.ready = attempt(async () => {
   await unpackLayers();
   buildControls();
   tell();

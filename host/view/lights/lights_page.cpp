@@ -123,8 +123,8 @@ std::string lights_page(const LightsPage& page) {
     return html_document(
         page.image.filename().string(), std::string(page_style) + view_css + lights_css,
         std::string(lights_html) + "<noscript><p>This page needs scripts.</p></noscript>\n" +
-            script_data("lights-data", data) + "<script>\n" + page_script + view_inputs_js +
-            view_spectra_js + lights_js + "</script>\n");
+            script_data("lights-data", data) + "<script>\n" + page_script + view_start_js +
+            view_inputs_js + view_spectra_js + lights_js + "</script>\n");
 }
 
 } // namespace reradiant
