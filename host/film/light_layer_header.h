@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reradiant/light_layers.h"
+#include "reradiant/spectral_image.h"
 
 #include <ImfHeader.h>
 

@@ -1,7 +1,8 @@
-#include "reradiant/light_layers.h"
+#include "reradiant/spectral_image.h"
 
 #include "host/exr/exr_input.h"
 #include "host/film/exr_layout.h"
+#include "host/film/lamp_cells.h"
 #include "host/film/light_layer_header.h"
 #include "host/film/spectral_part.h"
 #include "reradiant/error.h"

@@ -1,4 +1,3 @@
-#include "reradiant/light_layers.h"
 #include "reradiant/spectral_image.h"
 
 #include "host/base/atomic_file.h"

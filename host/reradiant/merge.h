@@ -1,6 +1,5 @@
 #pragma once
 
-#include "reradiant/light_layers.h"
 #include "reradiant/spectral_image.h"
 
 #include <cstdint>

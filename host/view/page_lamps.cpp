@@ -1,7 +1,8 @@
 #include "host/view/page_lamps.h"
 
+#include "host/film/lamp_cells.h"
 #include "host/view/tables/model_tables.h"
-#include "reradiant/light_layers.h"
+#include "reradiant/spectral_image.h"
 
 #include <algorithm>
 

@@ -30,6 +30,7 @@ extern const char* const view_vertex_glsl;
 /// Those of host/view/lights.
 extern const char* const lights_html;
 extern const char* const lights_css;
+extern const char* const lights_layers_js;
 extern const char* const lights_js;
 
 } // namespace reradiant

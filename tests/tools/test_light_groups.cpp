@@ -1,5 +1,5 @@
 // Lights apart, as users meet them: layers of a render, and the commands that read them.
-#include "reradiant/light_layers.h"
+#include "reradiant/spectral_image.h"
 #include "tests/tools/program_runner.h"
 
 #include <nlohmann/json.hpp>
@@ -148,6 +148,10 @@ TEST_F(LightGroups, WhatIsWrongIsSaidAndNothingWritten) {
     expect_failure(2, "view out.exr grey.toml -o no.html", "one picture");
     expect_failure(2, "view out.exr --glsl no.glsl", "no shader");
     expect_failure(2, "view out.exr", "no shader");
+    put("black.toml",
+        small_scene().replace(small_scene().find("radiance = 1"), 12, "radiance = 0"));
+    ASSERT_EQ(run("render black.toml -o black.exr --spp 1 --light-groups").exit_code, 0);
+    expect_failure(2, "view black.exr -o no.html", "black.exr: is black");
     expect_failure(2, "render scene.toml -o no.exr --light-groups --memory-limit 200000",
                    "the render would take");
 }

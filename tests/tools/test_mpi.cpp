@@ -1,6 +1,6 @@
 // The program under mpirun, on this machine alone. Skipped, loudly, where it was built without MPI
 // or where there is no mpirun.
-#include "reradiant/light_layers.h"
+#include "reradiant/spectral_image.h"
 #include "tests/tools/program_runner.h"
 
 #include <nlohmann/json.hpp>

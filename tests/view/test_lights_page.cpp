@@ -1,5 +1,6 @@
 // Pages of pictures whose lights slide: what they hold, and what they show, against the file.
 #include "host/film/display/develop.h"
+#include "host/film/lamp_cells.h"
 #include "host/view/lights/layer_code.h"
 #include "host/view/lights/lights_page.h"
 #include "reradiant/colour.h"

@@ -5,7 +5,6 @@
 #include "host/spectral/evidence/scatter_warnings.h"
 #include "host/spectral/spectrum/spectrum_formats.h"
 #include "reradiant/error.h"
-#include "reradiant/light_layers.h"
 #include "reradiant/reradiation.h"
 #include "reradiant/scene.h"
 #include "reradiant/scene_file.h"

@@ -1,5 +1,6 @@
 #include "host/render/plan/light_layer_plan.h"
 
+#include "host/film/lamp_cells.h"
 #include "host/render/plan/light_plan.h"
 
 #include <fmt/core.h>

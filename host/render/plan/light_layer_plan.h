@@ -1,7 +1,7 @@
 #pragma once
 
-#include "reradiant/light_layers.h"
 #include "reradiant/scene.h"
+#include "reradiant/spectral_image.h"
 #include "reradiant/wavelength_plan.h"
 
 #include <cstdint>

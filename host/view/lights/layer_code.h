@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reradiant/light_layers.h"
+#include "reradiant/spectral_image.h"
 
 #include <cstdint>
 #include <span>
@@ -32,7 +32,7 @@ struct LayerCode {
 /// 16 at most. Bands where it is dark throughout have no code.
 std::vector<LayerCode> layer_codes(std::span<const float> values, const WavelengthGrid& bands);
 
-/// Lengths and directions as a page unpacks them (host/view/lights/lights.js): differences along
+/// Lengths and directions as a page unpacks them (host/view/lights/layers.js): differences along
 /// the pixels, high bytes and low bytes by themselves, deflated (RFC 1950), in base64.
 std::string packed(const LayerCode& code);
 

@@ -11,7 +11,7 @@
 #include "reradiant/colour.h"
 #include "reradiant/error.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace reradiant {
 
@@ -105,6 +105,9 @@ std::vector<double> weights_of(const WavelengthGrid& bands) {
 
 std::string lights_page(const LightsPage& page) {
     const SpectralImage image = read_spectral_exr(page.image);
+    if (std::all_of(image.values.begin(), image.values.end(), [](float v) { return v == 0.0f; }))
+        throw_input_error({page.image.string()}, "is black: there is no light to slide",
+                          "give a picture that shows something");
     const Shown shown(image);
     const Json data = {{"name", page.image.filename().string()},
                        {"width", shown.width},
@@ -124,7 +127,7 @@ std::string lights_page(const LightsPage& page) {
         page.image.filename().string(), std::string(page_style) + view_css + lights_css,
         std::string(lights_html) + "<noscript><p>This page needs scripts.</p></noscript>\n" +
             script_data("lights-data", data) + "<script>\n" + page_script + view_start_js +
-            view_inputs_js + view_spectra_js + lights_js + "</script>\n");
+            view_inputs_js + view_spectra_js + lights_layers_js + lights_js + "</script>\n");
 }
 
 } // namespace reradiant
