@@ -179,6 +179,48 @@ private:
     std::vector<Moments> y_, bands_;
 };
 
+/// Sums of the parts' light layers, in double.
+class LayerAccumulator {
+public:
+    void add(const fs::path& file, const SpectralImage& part) {
+        std::size_t k = 0;
+        const bool is_first = layers_.empty();
+        read_light_layers(file, [&](LightLayer&& layer) {
+            if (is_first) {
+                sums_.emplace_back(layer.values.size());
+                layers_.push_back(layer);
+                layers_.back().values.clear();
+            }
+            if (k == layers_.size() || layers_[k].name() != layer.name() ||
+                sums_[k].size() != layer.values.size())
+                refuse(file, "has other light groups than the first part",
+                       "merge parts of one render");
+            const auto bands = static_cast<std::size_t>(part.bands.count);
+            for (std::size_t i = 0; i < layer.values.size(); ++i)
+                sums_[k][i] += static_cast<double>(part.sample_count[i / bands]) *
+                               static_cast<double>(layer.values[i]);
+            ++k;
+        });
+        if (k != layers_.size())
+            refuse(file, "lacks light groups of the first part", "merge parts of one render");
+    }
+
+    /// `mean` holds the counts of all samples.
+    std::vector<LightLayer> means(const SpectralImage& mean) {
+        const auto bands = static_cast<std::size_t>(mean.bands.count);
+        for (std::size_t k = 0; k < layers_.size(); ++k)
+            for (std::size_t i = 0; i < sums_[k].size(); ++i)
+                layers_[k].values.push_back(static_cast<float>(
+                    sums_[k][i] /
+                    std::max(static_cast<double>(mean.sample_count[i / bands]), 1.0)));
+        return std::move(layers_);
+    }
+
+private:
+    std::vector<LightLayer> layers_;
+    std::vector<std::vector<double>> sums_;
+};
+
 } // namespace
 
 std::optional<std::string> identity_difference(const SampleIdentity& now,
@@ -224,12 +266,15 @@ MergedImage merge_images(const std::vector<fs::path>& parts) {
     merged.gaps = gaps_between(heads, ranges);
     const SpectralImage first = read_spectral_exr(heads.front().file);
     Accumulator sums(first);
+    LayerAccumulator layers;
     for (const PartHead& head : heads) {
         const SpectralImage part = read_spectral_exr(head.file);
         check_alike(head.file, part, first);
         sums.add(part);
+        layers.add(head.file, part);
     }
     merged.image = sums.mean();
+    merged.light_layers = layers.means(merged.image);
     std::uint64_t samples = 0;
     for (const SampleRange& range : ranges)
         samples += range.end - range.first;

@@ -4,6 +4,7 @@
 #include "host/exr/exr_window.h"
 #include "host/film/exr_layout.h"
 #include "host/film/spectral_channels.h"
+#include "host/film/spectral_part.h"
 #include "reradiant/error.h"
 
 #include <ImfChannelList.h>
@@ -153,46 +154,6 @@ void check_names(const fs::path& file, const Imf::Header& header) {
                    "name it like S0.380,000000nm");
 }
 
-/// The first part with a spectrum; the first of all where none has one.
-int spectral_part(const Imf::MultiPartInputFile& input) {
-    for (int part = 0; part < input.parts(); ++part)
-        if (!band_channels(input.header(part)).empty())
-            return part;
-    return 0;
-}
-
-void read_image(Imf::MultiPartInputFile& input, int part, const fs::path& file,
-                SpectralImage& image) {
-    const Imf::Header& header = input.header(part);
-    if (header.hasType() && Imf::isDeepData(header.type()))
-        refuse(file, "holds deep data", "give a flat spectral image");
-    const std::vector<BandChannel> bands = band_channels(header);
-    if (bands.empty())
-        refuse_no_spectrum(file, header);
-    check_names(file, header);
-    const ExrWindow window(header);
-    check_memory(file, window, bands.size());
-    for (const BandChannel& band : bands)
-        check_channel(file, header, band.name);
-
-    image.width = static_cast<int>(window.width());
-    image.height = static_cast<int>(window.height());
-    image.left = window.display.min.x;
-    image.top = window.display.min.y;
-    image.bands = grid_of(file, header, bands);
-    std::vector<float> values(window.data_pixels() * bands.size());
-    std::vector<Target> targets;
-    for (std::size_t band = 0; band < bands.size(); ++band)
-        targets.push_back({bands[band].name, values.data() + band, image.bands.count});
-    read_rows(input, part, targets);
-    image.values = fit_to_display(std::move(values), window, bands.size());
-    for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
-        const auto* const text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
-        if (text && std::string_view(attribute.name()).starts_with(exr_layout::attribute_prefix))
-            image.attributes[attribute.name()] = text->value();
-    }
-}
-
 void read_statistics(Imf::MultiPartInputFile& input, int part, int image_part, const fs::path& file,
                      SpectralImage& image) {
     const Imf::Header& header = input.header(part);
@@ -231,11 +192,50 @@ void read_statistics(Imf::MultiPartInputFile& input, int part, int image_part, c
 
 } // namespace
 
+int spectral_part(const Imf::MultiPartInputFile& input) {
+    for (int part = 0; part < input.parts(); ++part)
+        if (!band_channels(input.header(part)).empty())
+            return part;
+    return 0;
+}
+
+SpectralImage read_spectral_part(Imf::MultiPartInputFile& input, int part, const fs::path& file) {
+    const Imf::Header& header = input.header(part);
+    if (header.hasType() && Imf::isDeepData(header.type()))
+        refuse(file, "holds deep data", "give a flat spectral image");
+    const std::vector<BandChannel> bands = band_channels(header);
+    if (bands.empty())
+        refuse_no_spectrum(file, header);
+    check_names(file, header);
+    const ExrWindow window(header);
+    check_memory(file, window, bands.size());
+    for (const BandChannel& band : bands)
+        check_channel(file, header, band.name);
+
+    SpectralImage image;
+    image.width = static_cast<int>(window.width());
+    image.height = static_cast<int>(window.height());
+    image.left = window.display.min.x;
+    image.top = window.display.min.y;
+    image.bands = grid_of(file, header, bands);
+    std::vector<float> values(window.data_pixels() * bands.size());
+    std::vector<Target> targets;
+    for (std::size_t band = 0; band < bands.size(); ++band)
+        targets.push_back({bands[band].name, values.data() + band, image.bands.count});
+    read_rows(input, part, targets);
+    image.values = fit_to_display(std::move(values), window, bands.size());
+    for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
+        const auto* const text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
+        if (text && std::string_view(attribute.name()).starts_with(exr_layout::attribute_prefix))
+            image.attributes[attribute.name()] = text->value();
+    }
+    return image;
+}
+
 SpectralImage read_spectral_exr(const fs::path& file) {
     return with_exr_input(file, [&](Imf::MultiPartInputFile& input) {
-        SpectralImage image;
         const int image_part = spectral_part(input);
-        read_image(input, image_part, file, image);
+        SpectralImage image = read_spectral_part(input, image_part, file);
         for (int part = 0; part < input.parts(); ++part)
             if (part != image_part && input.header(part).hasName() &&
                 input.header(part).name() == exr_layout::statistics_part)

@@ -3,6 +3,7 @@
 #include "host/base/atomic_file.h"
 #include "host/film/checked_stream.h"
 #include "host/film/exr_layout.h"
+#include "host/film/light_layer_header.h"
 #include "host/film/spectral_channels.h"
 #include "reradiant/error.h"
 
@@ -62,13 +63,17 @@ Imf::Header part_header(const SpectralImage& image, const char* name) {
     return header;
 }
 
-void add_attributes(Imf::Header& header, const SpectralImage& image, double exposure_ev) {
+void add_spectral_attributes(Imf::Header& header, const SpectralImage& image) {
     header.insert("spectralLayoutVersion", Imf::StringAttribute("1.0"));
     header.insert("emissiveUnits", Imf::StringAttribute("W.m^-2.sr^-1"));
-    header.insert("EV", Imf::FloatAttribute(static_cast<float>(exposure_ev)));
     header.insert(exr_layout::quantity_attribute, Imf::StringAttribute("radiance per nm"));
     header.insert(exr_layout::first_band_attribute, Imf::DoubleAttribute(image.bands.from_nm));
     header.insert(exr_layout::band_step_attribute, Imf::DoubleAttribute(image.bands.step_nm));
+}
+
+void add_attributes(Imf::Header& header, const SpectralImage& image, double exposure_ev) {
+    add_spectral_attributes(header, image);
+    header.insert("EV", Imf::FloatAttribute(static_cast<float>(exposure_ev)));
     for (const auto& [key, text] : image.attributes) {
         const bool has_prefix = key.find(':') != std::string::npos;
         const std::string name = has_prefix ? key : exr_layout::attribute_prefix + key;
@@ -88,14 +93,17 @@ struct Part {
         frame.insert(name, Imf::Slice::Make(Imf::FLOAT, first, header.dataWindow(), x_stride,
                                             x_stride * static_cast<std::size_t>(image.width)));
     }
+    void add_bands(const SpectralImage& image, const std::vector<float>& values) {
+        for (int band = 0; band < image.bands.count; ++band)
+            add(spectral_channel_name(image.bands.centre_nm(band)), image, values.data() + band,
+                image.bands.count);
+    }
 };
 
 Part image_part(const SpectralImage& image, const std::vector<float>& rgb, double exposure_ev) {
     Part part{part_header(image, exr_layout::image_part), {}};
     add_attributes(part.header, image, exposure_ev);
-    for (int band = 0; band < image.bands.count; ++band)
-        part.add(spectral_channel_name(image.bands.centre_nm(band)), image,
-                 image.values.data() + band, image.bands.count);
+    part.add_bands(image, image.values);
     const char* const names[] = {"R", "G", "B"};
     for (int channel = 0; channel < 3; ++channel)
         part.add(names[channel], image, rgb.data() + channel, 3);
@@ -113,6 +121,14 @@ Part statistics_part(const SpectralImage& image) {
             part.add(exr_layout::variance_prefix +
                          spectral_channel_name(image.bands.centre_nm(band)),
                      image, image.variance_bands.data() + band, image.bands.count);
+    return part;
+}
+
+Part layer_part(const SpectralImage& image, const LightLayer& layer) {
+    Part part{part_header(image, (exr_layout::light_prefix + layer.name()).c_str()), {}};
+    add_spectral_attributes(part.header, image);
+    describe_layer(part.header, layer);
+    part.add_bands(image, layer.values);
     return part;
 }
 
@@ -141,7 +157,16 @@ void write_parts(const std::filesystem::path& file, const std::vector<Part>& par
 
 void write_spectral_exr(const std::filesystem::path& file, const SpectralImage& image,
                         double exposure_ev) {
+    write_spectral_exr(file, image, exposure_ev, {});
+}
+
+void write_spectral_exr(const std::filesystem::path& file, const SpectralImage& image,
+                        double exposure_ev, std::span<const LightLayer> layers) {
     check_shape(image);
+    for (const LightLayer& layer : layers)
+        if (layer.values.size() != image.values.size())
+            throw_runtime_error(
+                fmt::format("the light layer {} does not fit the image", layer.name()));
     std::vector<float> rgb = linear_srgb(image);
     const double gain = std::exp2(exposure_ev);
     for (float& value : rgb)
@@ -150,6 +175,8 @@ void write_spectral_exr(const std::filesystem::path& file, const SpectralImage& 
     std::vector<Part> parts{image_part(image, rgb, exposure_ev)};
     if (!image.sample_count.empty() || !image.variance_y.empty() || !image.variance_bands.empty())
         parts.push_back(statistics_part(image));
+    for (const LightLayer& layer : layers)
+        parts.push_back(layer_part(image, layer));
     write_atomically(file,
                      [&](const std::filesystem::path& target) { write_parts(target, parts); });
 }

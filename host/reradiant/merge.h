@@ -35,7 +35,8 @@ std::string identity_text(const SampleIdentity& identity);
 
 struct MergedImage {
     SpectralImage image;
-    std::vector<SampleRange> gaps; ///< between the first and the last sample
+    std::vector<LightLayer> light_layers; ///< where the parts hold them
+    std::vector<SampleRange> gaps;        ///< between the first and the last sample
 };
 
 /// The mean over all samples of partial renders of one scene: values weighted by each pixel's

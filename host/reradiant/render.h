@@ -31,6 +31,9 @@ struct RenderOptions {
     bool band_variance = false;
     bool adaptive = false; ///< more samples where the error is (host/render/wavefront/adaptive.h);
                            ///< `samples` is then the mean over pixels
+    /// What each group of lights adds is kept apart (RenderResult::light_layers): lights of one
+    /// name (Scene::light_groups), and every other light by itself. The image is the same.
+    bool light_groups = false;
     bool all_features = false;
     std::string also_on;    ///< one feature (RenderFeatures) that kernels get, needed or not
     bool in_double = false; ///< kernels compute in double what they do not keep, for comparison
@@ -59,6 +62,7 @@ using RenderObserver =
 
 struct RenderResult {
     SpectralImage image;
+    std::vector<LightLayer> light_layers; ///< that add up to the image, where they are asked for
     std::vector<RenderProgress> passes;
     double setup_seconds = 0.0, build_seconds = 0.0;
     double trace_seconds = 0.0; ///< rays on the host

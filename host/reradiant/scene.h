@@ -183,6 +183,9 @@ struct Scene {
     Camera camera;
     IntegratorSettings integrator;
     std::vector<Light> lights;
+    /// Names that lights were given, "" where none: those of one name are a group
+    /// (RenderOptions::light_groups). Empty where no light has any.
+    std::vector<std::string> light_groups;
     std::vector<Shape> shapes;
     /// Surface i stands for the i-th [[material]] of the file; an untextured one is material i, the
     /// variants of textured ones follow after all of them.

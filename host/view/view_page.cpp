@@ -2,12 +2,12 @@
 
 #include "host/report/html.h"
 #include "host/report/page_parts.h"
+#include "host/view/packed_text.h"
+#include "host/view/page_lamps.h"
 #include "host/view/page_sources.h"
-#include "host/view/tables/model_tables.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <initializer_list>
 
 namespace reradiant {
@@ -15,32 +15,6 @@ namespace reradiant {
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-/// Lamps that every page has: daylight, bulb, tubes, diodes, ultraviolet lamps.
-constexpr const char* usual_lamps[] = {"D65",    "D50",    "A",        "FL2",      "FL11",
-                                       "LED-B3", "LED-V1", "L:365:10", "L:405:10", "E"};
-/// Cells of 1 nm that a lamp's means are taken over (host/view/page/spectra.js has the same).
-constexpr int lamp_from_nm = 280, lamp_cells = 561;
-
-Json lamp_json(const Lamp& lamp) {
-    std::vector<double> means;
-    for (int cell = 0; cell < lamp_cells; ++cell) {
-        const double centre = lamp_from_nm + cell;
-        means.push_back(lamp.light.average(centre - 0.5, centre + 0.5));
-    }
-    return {{"name", lamp.name}, {"values", encoded_floats(means)}};
-}
-
-Json lamps_json(const ViewPage& page) {
-    Json list = Json::array();
-    for (const Lamp& lamp : page.lamps)
-        list.push_back(lamp_json(lamp));
-    for (const char* name : usual_lamps)
-        if (std::none_of(page.lamps.begin(), page.lamps.end(),
-                         [&](const Lamp& lamp) { return lamp.name == name; }))
-            list.push_back(lamp_json(lamp_from_text(name)));
-    return list;
-}
 
 std::string joined(std::initializer_list<const char*> parts) {
     std::string all;
@@ -50,10 +24,10 @@ std::string joined(std::initializer_list<const char*> parts) {
 }
 
 std::string script() {
-    return joined({page_script, view_tables_js, view_optics_js, view_models_js,
-                   view_weidlich_wilkie_js, view_dyes_js, view_spectra_js, view_scene_js,
-                   view_mesh_js, view_gpu_js, view_picture_js, view_toml_js, view_reading_js,
-                   view_controls_js, view_main_js});
+    return joined({view_tables_js, view_optics_js, view_models_js, view_weidlich_wilkie_js,
+                   view_dyes_js, view_spectra_js, view_scene_js, view_mesh_js, view_gpu_js,
+                   view_picture_js, view_toml_js, view_reading_js, view_inputs_js, view_controls_js,
+                   view_main_js});
 }
 
 Json shaders_json() {
@@ -65,16 +39,20 @@ Json shaders_json() {
 } // namespace
 
 std::string view_page(const ViewPage& page) {
-    Json data = {{"gallery", page.is_gallery},
-                 {"lamps", lamps_json(page)},
-                 {"shaders", shaders_json()},
-                 {"materials", Json::array()}};
+    const Json data = {{"gallery", page.is_gallery},
+                       {"lamps", lamps_json(page.lamps)},
+                       {"shaders", shaders_json()}};
+    Json materials = Json::array();
     for (const ViewedMaterial& material : page.materials)
-        data["materials"].push_back(material_data(material, !page.is_gallery));
+        materials.push_back(material_data(material, !page.is_gallery));
+    constexpr auto on_bad_utf8 = Json::error_handler_t::replace;
+    const std::string numbers = packed_text(materials.dump(-1, ' ', false, on_bad_utf8));
     return html_document(
         page.title, joined({page_style, view_css}),
         std::string(view_html) + "<noscript><p>This page needs scripts.</p></noscript>\n" +
-            script_data("view-data", data) + "<script>\n" + script() + "</script>\n");
+            script_data("view-data", data) + "<script type=\"text/plain\" id=\"view-materials\">" +
+            numbers + "</script>\n" + "<script type=\"text/plain\" id=\"view-script\">\n" +
+            script() + "</script>\n" + "<script>\n" + page_script + view_start_js + "</script>\n");
 }
 
 } // namespace reradiant

@@ -107,6 +107,10 @@ std::map<std::string, Planned> generated() {
     all["band variance"].options.band_variance = true;
     all["adaptive"] = planned({over_grey({})});
     all["adaptive"].options.adaptive = true;
+    all["light groups"] = planned({over_fluorescent({layer(1.5)}), over_grey({})});
+    all["light groups"].options.light_groups = true;
+    all["images in groups"] = with_images();
+    all["images in groups"].options.light_groups = true;
     all["all features"] = planned({over_grey({layer(1.5)})});
     all["all features"].options.all_features = true;
     return all;
@@ -118,11 +122,13 @@ void expect_foreseen(const std::string& name, const Planned& planned) {
     const SceneTables tables = build_scene_tables(planned.scene, plan);
     const WavefrontBuffers buffers(device(), plan, tables);
     const DeviceFilm film(device(), plan.film, static_cast<std::uint32_t>(plan.pixels));
+    const std::size_t films = 1 + buffers.layer_lights.size();
 #define BUFFER(type, name) EXPECT_EQ(buffers.name.size(), plan.counts.name) << #name;
     RENDER_BUFFERS(BUFFER)
 #undef BUFFER
-    EXPECT_EQ(film.float_count(), plan.counts.sums + plan.counts.statistics);
-    EXPECT_EQ(buffers.bytes() + film.bytes(), plan.device_bytes());
+    EXPECT_EQ(films * film.float_count(), plan.counts.sums + plan.counts.statistics);
+    EXPECT_EQ(buffers.bytes() + films * film.bytes(), plan.device_bytes());
+    EXPECT_LE(tables.tables.size(), plan.counts.tables) << "what the tables' copy is foreseen as";
 }
 
 TEST(RenderPlan, ForeseesEveryBufferOfGeneratedScenes) {
@@ -139,7 +145,10 @@ TEST(RenderPlan, ForeseesEveryBufferOfTheExamples) {
 }
 
 TEST(RenderPlan, RendersTakeTheBytesThatItForesees) {
-    for (const Planned& planned : {planned({over_fluorescent({layer(1.5)})}), with_images()}) {
+    Planned in_groups = with_images();
+    in_groups.options.light_groups = true;
+    for (const Planned& planned :
+         {planned({over_fluorescent({layer(1.5)})}), with_images(), in_groups}) {
         RenderOptions options = planned.options;
         options.samples = 1;
         EXPECT_EQ(render(planned.scene, device(), options).device_bytes,
@@ -168,6 +177,17 @@ TEST(RenderPlan, RefusesByWhatItForesees) {
     EXPECT_NO_THROW(plan_render(small.scene, device().info(), small.options));
     --small.options.memory_limit_bytes;
     EXPECT_THROW(plan_render(small.scene, device().info(), small.options), Error);
+}
+
+TEST(RenderPlan, EveryLightLayerTakesAFilm) {
+    Planned lit = planned({over_fluorescent({layer(1.5)})});
+    const std::uint64_t alone = plan_render(lit.scene, device().info(), lit.options).counts.sums;
+    lit.options.light_groups = true;
+    const RenderPlan plan = plan_render(lit.scene, device().info(), lit.options);
+    EXPECT_GE(plan.lights.layers.size(), lit.scene.lights.size());
+    EXPECT_EQ(plan.counts.sums, plan.films() * alone);
+    lit.options.memory_limit_bytes = plan.device_bytes() + plan.host_bytes - 1;
+    EXPECT_THROW(plan_render(lit.scene, device().info(), lit.options), Error);
 }
 
 TEST(RenderPlan, BlackEnvironmentsNeedNothing) {

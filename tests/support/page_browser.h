@@ -24,14 +24,16 @@ public:
     static constexpr const char* missing = "no Chromium here: pages are not tested in a browser";
 
     /// Opens `html` from a file in the folder, runs `steps` (the body of an asynchronous function,
-    /// which fills `outcome`) when it is loaded, and returns the outcome with what every page must
-    /// say of itself: `faults`, resources `fetched` from elsewhere, `pictures`, those `broken`.
-    /// With `is_timed` the page's clock is the real one; else timers run as soon as they can.
+    /// which fills `outcome`) when it is loaded and unpacked, and returns the outcome with what
+    /// every page must say of itself: `faults`, resources `fetched` from elsewhere, `pictures`,
+    /// those `broken`. With `is_timed` the page's clock is the real one; else timers run as soon as
+    /// they can.
     nlohmann::json opened(const std::filesystem::path& folder, std::string html,
                           const std::string& steps, bool is_timed = false) const {
         html.insert(html.find("<head>") + 6, watch);
+        html.insert(html.rfind("</body>"), held);
         html.insert(html.rfind("</body>"), "<script>addEventListener('load', async () => { const "
-                                           "outcome = {};\ntry {\n" +
+                                           "outcome = {};\ntry {\nawait window.ready;\n" +
                                                steps + report + "});</script>");
         std::ofstream(folder / "opened.html", std::ios::binary) << html;
         const std::string command =
@@ -46,6 +48,13 @@ public:
     }
 
 private:
+    /// The page counts as loaded when it is unpacked, and not before, as by the real clock nobody
+    /// waits for more: one small picture after the other is loaded until then.
+    static constexpr const char* held =
+        "<script>{ let isUnpacked = false; const hold = () => { if (isUnpacked) return; "
+        "const one = new Image(); one.onload = one.onerror = hold; one.src = "
+        "'data:image/gif;base64,R0lGODlhAQABAAAAACwAAAAAAQABAAA='; }; hold(); "
+        "Promise.resolve(window.ready).then(() => { isUnpacked = true; }); }</script>";
     /// Runs before the page's own script: what goes wrong there is kept.
     static constexpr const char* watch = "<script>window.faults = [];"
                                          "addEventListener('error', (e) => "

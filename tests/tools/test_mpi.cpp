@@ -1,5 +1,6 @@
 // The program under mpirun, on this machine alone. Skipped, loudly, where it was built without MPI
 // or where there is no mpirun.
+#include "reradiant/spectral_image.h"
 #include "tests/tools/program_runner.h"
 
 #include <nlohmann/json.hpp>
@@ -84,6 +85,21 @@ TEST_F(Mpi, AnyNumberOfRanksGivesThePictureOfOne) {
         const double error = one.at("relmse").get<double>();
         EXPECT_NEAR(many.at("relmse").get<double>(), error, 1e-4 * error) << "of the same halves";
     }
+}
+
+TEST_F(Mpi, RanksBringTheLightGroupsTogether) {
+    ASSERT_EQ(run("render scene.toml -o one.exr --spp 64 --light-groups").exit_code, 0);
+    ASSERT_EQ(run_ranks(2, "render scene.toml -o many.exr --spp 64 --light-groups").exit_code, 0);
+    expect_equal("many.exr", "one.exr");
+    std::vector<LightLayer> one;
+    read_light_layers(folder / "one.exr", [&](LightLayer&& layer) { one.push_back(layer); });
+    std::size_t k = 0;
+    read_light_layers(folder / "many.exr", [&](LightLayer&& layer) {
+        for (std::size_t i = 0; i < layer.values.size(); ++i)
+            ASSERT_NEAR(layer.values[i], one.at(k).values[i], 1e-5f);
+        ++k;
+    });
+    EXPECT_EQ(k, one.size());
 }
 
 TEST_F(Mpi, RulesThatStopARenderStopAllRanks) {

@@ -3,6 +3,7 @@
 #include "reradiant/error.h"
 #include "tools/program/command.h"
 #include "tools/program/display_options.h"
+#include "tools/program/groups_option.h"
 #include "tools/program/outputs.h"
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@ namespace {
 
 struct DevelopCommand {
     std::filesystem::path input, output;
+    std::string groups;
     DisplayTexts display;
 };
 
@@ -46,6 +48,7 @@ void print_summary(const DevelopCommand& command, const Picture& picture) {
 
 int run_develop(const DevelopCommand& command, const CommandContext& context) {
     const DevelopOptions options = parse_display_options(command.display);
+    const LightFactors factors = parse_groups_option(command.groups);
     check_outputs(context.common,
                   {{.option = "-o",
                     .file = command.output,
@@ -53,7 +56,7 @@ int run_develop(const DevelopCommand& command, const CommandContext& context) {
                     .ending_chooses = true}},
                   {command.input});
     check_develop(options);
-    const Picture picture = develop(read_spectral_exr(command.input), options);
+    const Picture picture = develop(read_image(command.input, factors), options);
     write_picture(command.output, picture);
     write_json(context.common.json, result_json(command, picture));
     if (!context.common.quiet)
@@ -70,6 +73,7 @@ void add_develop_command(Program& program, CommandContext& context) {
         "Makes a picture of a spectral image: exposure, white, gamut, without rendering");
     app.option("IMAGE", command->input, "spectral EXR").required();
     app.option("-o,--output", command->output, "picture to write: .png, .jpg or .tif").required();
+    add_groups_option(app, command->groups);
     add_display_options(app, command->display);
     app.footer("Example: reradiant develop out.exr -o out.png --exposure auto --white A --gamut "
                "compress");

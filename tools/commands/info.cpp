@@ -56,6 +56,9 @@ Json describe_image(const fs::path& file) {
     result["variance"] = image.variance_y.empty()       ? "none"
                          : image.variance_bands.empty() ? "of Y"
                                                         : "of Y and of every band";
+    for (const LightLayer& layer : light_layers_of(file))
+        result["light_layers"].push_back(
+            {{"name", layer.name()}, {"from_nm", layer.from_nm}, {"to_nm", layer.to_nm}});
     result["attributes"] = image.attributes;
     return result;
 }

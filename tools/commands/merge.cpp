@@ -41,7 +41,7 @@ int run_merge(const MergeCommand& command, const CommandContext& context) {
     picture.exposure_ev = options.display.exposure_ev;
     if (!command.png.empty() || options.auto_exposure)
         picture = develop(merged.image, options);
-    write_spectral_exr(command.output, merged.image, picture.exposure_ev);
+    write_spectral_exr(command.output, merged.image, picture.exposure_ev, merged.light_layers);
     if (!command.png.empty())
         write_picture(command.png, picture);
     const std::string& ranges = attributes.at(sample_ranges_attribute);

@@ -84,7 +84,8 @@ std::string error_text(double relmse) {
                                  : "the error is not known: it takes more samples";
 }
 
-/// Three lines: what was made, how good it is, how long it took. The rest for who asks.
+/// Three lines: what was made, how good it is, how long it took; the layers. The rest for who
+/// asks.
 void print_summary(const RenderResult& result, const RenderCommand& command,
                    const CommonOptions& common) {
     fmt::print("{}: {} x {} pixels, {} bands, {} samples a pixel{}\n", command.output.string(),
@@ -103,6 +104,12 @@ void print_summary(const RenderResult& result, const RenderCommand& command,
                result.total_seconds, result.setup_seconds, result.build_seconds,
                result.trace_seconds, result.shade_seconds,
                rendering > 0.0 ? static_cast<double>(result.paths) / rendering * 1e-6 : 0.0);
+    if (!result.light_layers.empty()) {
+        std::vector<std::string> names;
+        for (const LightLayer& layer : result.light_layers)
+            names.push_back(layer.name());
+        fmt::print("light groups: {}\n", fmt::join(names, ", "));
+    }
     if (!common.verbose)
         return;
     for (const std::string& note : result.notes)
@@ -169,7 +176,7 @@ void write_results(RenderCommand& command, const RenderResult& result) {
     picture.exposure_ev = command.display.display.exposure_ev;
     if (command.display.auto_exposure)
         picture = develop(result.image, command.display);
-    write_spectral_exr(command.output, result.image, picture.exposure_ev);
+    write_spectral_exr(command.output, result.image, picture.exposure_ev, result.light_layers);
     std::error_code ignored; // not before: what a full disk does not take can be written later
     if (!command.render.checkpoint.empty())
         std::filesystem::remove(command.render.checkpoint, ignored);
@@ -262,6 +269,9 @@ void add_sampling_options(Command app, RenderCommand& command) {
     app.option("--variance", command.variance, "bands: variance per band, too").one_of({"bands"});
     app.flag("--adaptive", command.render.adaptive,
              "more samples where the error is; --spp is then the mean over pixels");
+    app.flag("--light-groups", command.render.light_groups,
+             "keep what each [[light]] adds, or each `group` of them, as layers of the EXR; where "
+             "something fluoresces, by its ultraviolet and its visible light");
     app.flag("--all-features", command.render.all_features,
              "compile everything, also what the scene does not need");
     app.flag("--double", command.render.in_double,

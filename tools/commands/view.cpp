@@ -1,8 +1,10 @@
 #include "host/base/atomic_file.h"
 #include "host/base/logging.h"
+#include "host/base/output_ending.h"
 #include "host/report/json_file.h"
 #include "host/scene/model/named_files.h"
 #include "host/view/export/exchange_files.h"
+#include "host/view/lights/lights_page.h"
 #include "host/view/view_page.h"
 #include "reradiant/error.h"
 #include "reradiant/scene_file.h"
@@ -13,6 +15,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <sstream>
@@ -49,6 +52,23 @@ std::vector<Lamp> asked_lamps(const ViewOptions& options) {
     for (const fs::path& file : options.lamp_files)
         lamps.push_back(read_lamp(file));
     return lamps;
+}
+
+bool is_image(const fs::path& file) {
+    return lower_case_ending(file) == ".exr";
+}
+
+/// True where the page is of a picture, which it shows alone.
+bool shows_image(const ViewOptions& options) {
+    if (std::none_of(options.files.begin(), options.files.end(), is_image))
+        return false;
+    if (options.files.size() > 1 || !options.presets.empty() || options.gallery)
+        throw_input_error({}, "a page shows one picture and nothing beside it",
+                          "name the picture alone");
+    if (options.exchanges() || options.output.empty())
+        throw_input_error({}, "of a picture there is a page, and no shader",
+                          "name a page: -o PAGE.html");
+    return true;
 }
 
 /// What the command line says together: a material or the gallery, a page or a file, and for files
@@ -144,8 +164,21 @@ std::string page_title(const ViewOptions& options, const std::vector<ViewedMater
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
+void write_files(const MadeFiles& made, nlohmann::ordered_json json, const CommonOptions& common) {
+    for (const auto& [file, text] : made) {
+        write_text_atomically(file, text);
+        json["bytes"][file.string()] = text.size();
+    }
+    write_json(common.json, json);
+    if (!common.quiet)
+        for (const auto& [file, text] : made)
+            fmt::print("{}: {} kB\n", file.string(), (text.size() + 999) / 1000);
+}
+
 int run_view(const ViewOptions& options, const CommonOptions& common) {
-    check_options(options);
+    const bool is_of_image = shows_image(options);
+    if (!is_of_image)
+        check_options(options);
     std::vector<fs::path> inputs = options.files;
     inputs.insert(inputs.end(), options.lamp_files.begin(), options.lamp_files.end());
     const std::vector<NamedOutput> outputs{{"-o", options.output, {".html", ".htm"}},
@@ -157,6 +190,12 @@ int run_view(const ViewOptions& options, const CommonOptions& common) {
     std::vector<Lamp> lamps = asked_lamps(options);
     if (options.exchanges() && lamps.size() > 1)
         throw_input_error({}, "shader files are for one lamp", "name one alone");
+    if (is_of_image) {
+        const fs::path& image = options.files.front();
+        write_files({{options.output, lights_page({image, std::move(lamps)})}},
+                    {{"layers", light_layers_of(image).size()}}, common);
+        return 0;
+    }
     const std::vector<ViewedMaterial> materials = asked_materials(options);
     check_outputs(common, outputs, named_files());
     MadeFiles made;
@@ -167,15 +206,7 @@ int run_view(const ViewOptions& options, const CommonOptions& common) {
         add_exchange_files(made, options, materials.front(),
                            lamps.empty() ? lamp_from_text("D65") : lamps.front());
     });
-    nlohmann::ordered_json files;
-    for (const auto& [file, text] : made) {
-        write_text_atomically(file, text);
-        files[file.string()] = text.size();
-    }
-    write_json(common.json, {{"materials", materials.size()}, {"bytes", files}});
-    if (!common.quiet)
-        for (const auto& [file, text] : made)
-            fmt::print("{}: {} kB\n", file.string(), (text.size() + 999) / 1000);
+    write_files(made, {{"materials", materials.size()}}, common);
     return 0;
 }
 
@@ -197,8 +228,12 @@ void add_file_options(Command& command, ViewOptions& options) {
 void add_view_command(Program& program, CommandContext& context) {
     auto options = std::make_shared<ViewOptions>();
     Command command = program.add_command(
-        "view", "Makes a page to turn a material and its lamp in a browser, and shader files");
-    command.option("MATERIAL", options->files, "TOML files with one [material] each");
+        "view",
+        "Makes a page to turn a material and its lamp in a browser, or a picture's lights up "
+        "and down; shader files");
+    command.option("FILE", options->files,
+                   "TOML files with one [material] each, or one spectral EXR, whose light groups "
+                   "(`render --light-groups`) get sliders");
     command
         .option("--preset", options->presets,
                 "a material of spectra/materials by name (repeatable)")
@@ -216,6 +251,7 @@ void add_view_command(Program& program, CommandContext& context) {
         .one_at_a_time();
     command.footer("Examples:\n"
                    "  reradiant view lacquer.toml --illuminant D65,L:365:10 -o lacquer.html\n"
+                   "  reradiant view room.exr -o room.html\n"
                    "  reradiant view --preset red-lacquer --materialx lacquer.mtlx --osl "
                    "lacquer.osl");
     command.callback(

@@ -52,9 +52,9 @@ RenderProgress pass_from(const nlohmann::json& json) {
     return pass;
 }
 
-std::string header_text(const RenderCheckpoint& head, FilmSums film) {
+std::string header_text(const RenderCheckpoint& head, FilmSums films) {
     std::size_t sums = 0, statistics = 0;
-    for (const FilmStrip& strip : film) {
+    for (const FilmStrip& strip : films) {
         sums += strip.sums.size();
         statistics += strip.statistics.size();
     }
@@ -144,7 +144,7 @@ CheckpointSizes parse_header(const fs::path& file, const std::string& text,
 
 } // namespace
 
-std::uint64_t write_checkpoint(const fs::path& file, const RenderCheckpoint& head, FilmSums film) {
+std::uint64_t write_checkpoint(const fs::path& file, const RenderCheckpoint& head, FilmSums films) {
     std::uint64_t bytes = 0;
     write_atomically(file, [&](const fs::path& target) {
         std::ofstream stream(target, std::ios::binary);
@@ -154,10 +154,10 @@ std::uint64_t write_checkpoint(const fs::path& file, const RenderCheckpoint& hea
             sha.update(piece);
             bytes += piece.size();
         };
-        write(header_text(head, film));
-        for (const FilmStrip& strip : film)
+        write(header_text(head, films));
+        for (const FilmStrip& strip : films)
             write(bytes_of(strip.sums));
-        for (const FilmStrip& strip : film)
+        for (const FilmStrip& strip : films)
             write(bytes_of(strip.statistics));
         write(sha.hex());
         stream.close();

@@ -5,6 +5,7 @@
 #include "reradiant/error.h"
 
 #include <algorithm>
+#include <span>
 
 namespace reradiant {
 
@@ -12,6 +13,14 @@ namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void restore(std::span<const DeviceFilm> films, const RenderCheckpoint& kept) {
+    const std::size_t sums = kept.sums.size() / films.size(),
+                      statistics = kept.statistics.size() / films.size();
+    for (std::size_t k = 0; k < films.size(); ++k)
+        films[k].restore(std::span(kept.sums).subspan(k * sums, sums),
+                         std::span(kept.statistics).subspan(k * statistics, statistics));
 }
 
 } // namespace
@@ -30,14 +39,15 @@ RenderProgress CheckpointFile::resume(Wavefront& wavefront, RenderResult& result
         return {};
     RenderCheckpoint kept;
     try {
-        kept = read_checkpoint(options_.checkpoint, head_.identity, wavefront.film().float_count());
+        kept = read_checkpoint(options_.checkpoint, head_.identity,
+                               wavefront.films().size() * wavefront.film().float_count());
     } catch (const Error& error) {
         if (!options_.restart_if_other)
             throw;
         logging::warn("{}; this render begins anew", error.what());
         return {};
     }
-    wavefront.film().restore(kept.sums, kept.statistics);
+    restore(wavefront.films(), kept);
     result.passes = kept.passes;
     result.paths = kept.paths;
     result.rays = kept.rays;
@@ -55,8 +65,8 @@ void CheckpointFile::after_pass(const Wavefront& wavefront, const RenderResult& 
     head_.paths = result.paths + wavefront.statistics().paths;
     head_.rays = result.rays + wavefront.statistics().rays;
     try {
-        wavefront.film().read(
-            [&](FilmSums film) { write_checkpoint(options_.checkpoint, head_, film); });
+        read_films(wavefront.films(),
+                   [&](FilmSums films) { write_checkpoint(options_.checkpoint, head_, films); });
     } catch (const Error& error) {
         // A full disk costs the checkpoint, not the render; an interrupted one has no more.
         if (result.interrupted)

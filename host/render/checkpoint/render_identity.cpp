@@ -107,6 +107,7 @@ SampleIdentity sampling_identity(const Scene& scene, const RenderOptions& option
             {"variance per band", options.band_variance ? "on" : "off"},
             {"specialisation", options.all_features ? "off" : "on"},
             {"adaptive", options.adaptive ? "on" : "off"},
+            {"keeping of light groups", options.light_groups ? "on" : "off"},
             {"precision", options.in_double ? "double" : "single"}};
 }
 

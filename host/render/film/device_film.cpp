@@ -95,4 +95,18 @@ std::size_t DeviceFilm::float_count() const {
     return pixels_ * (floats_per_pixel_ + film_statistics_per_pixel);
 }
 
+void read_films(std::span<const DeviceFilm> films, const std::function<void(FilmSums)>& use) {
+    if (films.size() == 1) {
+        films.front().read(use);
+        return;
+    }
+    films.front().read([&](FilmSums first) {
+        read_films(films.subspan(1), [&](FilmSums others) {
+            std::vector<FilmStrip> all(first.begin(), first.end());
+            all.insert(all.end(), others.begin(), others.end());
+            use(all);
+        });
+    });
+}
+
 } // namespace reradiant

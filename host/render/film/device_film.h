@@ -46,4 +46,7 @@ private:
     std::vector<Strip> strips_;
 };
 
+/// Calls `use` with the sums of several films, one film after the other, mapped for the call.
+void read_films(std::span<const DeviceFilm> films, const std::function<void(FilmSums)>& use);
+
 } // namespace reradiant

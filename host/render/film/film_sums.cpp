@@ -78,6 +78,18 @@ std::uint64_t FilmStrip::refused() const {
     return static_cast<std::uint64_t>(total);
 }
 
+void append_means(const FilmStrip& strip, const FilmLayout& layout, int bands,
+                  std::vector<float>& values) {
+    const auto count = static_cast<std::size_t>(bands);
+    const std::size_t before = values.size();
+    values.resize(before + strip.pixels() * count);
+    for_each_pixel(strip, layout, bands, [&](std::size_t at, const PixelSums& sums, std::size_t) {
+        const double n = accepted(strip, at);
+        for (std::size_t b = 0; b < count; ++b)
+            values[before + at * count + b] = static_cast<float>(n > 0.0 ? sums.sum[b] / n : 0.0);
+    });
+}
+
 FilmResolver::FilmResolver(const FilmLayout& layout, int width, int height,
                            const WavelengthGrid& bands)
     : layout_(layout) {

@@ -51,6 +51,10 @@ struct FilmStrip {
 using FilmSums = std::span<const FilmStrip>;
 constexpr std::size_t film_strip_unit = 1024;
 
+/// Appends the means of a strip's pixels, (pixel, band), without what else is known of them.
+void append_means(const FilmStrip& strip, const FilmLayout& layout, int bands,
+                  std::vector<float>& values);
+
 /// Makes the mean image with sample count and variance of the mean (film_variance.h), strip after
 /// strip, so that a strip may go as soon as it was added.
 class FilmResolver {

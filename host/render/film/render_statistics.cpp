@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sys/resource.h>
 
 namespace reradiant {
@@ -26,6 +27,18 @@ nlohmann::ordered_json finite_or_null(double value) {
 nlohmann::ordered_json sample_range(const SpectralImage& image) {
     const auto [least, most] = std::ranges::minmax(image.sample_count);
     return {static_cast<std::uint64_t>(least), static_cast<std::uint64_t>(most)};
+}
+
+nlohmann::ordered_json layers_json(const RenderResult& result) {
+    nlohmann::ordered_json layers = nlohmann::ordered_json::array();
+    for (const LightLayer& layer : result.light_layers) {
+        const double sum = std::accumulate(layer.values.begin(), layer.values.end(), 0.0);
+        layers.push_back({{"name", layer.name()},
+                          {"from_nm", layer.from_nm},
+                          {"to_nm", layer.to_nm},
+                          {"mean_radiance", sum / static_cast<double>(layer.values.size())}});
+    }
+    return layers;
 }
 
 } // namespace
@@ -60,6 +73,7 @@ nlohmann::ordered_json render_statistics(const RenderResult& result, const Devic
         {"relmse", finite_or_null(result.relmse)},
         {"spp_range", sample_range(result.image)},
         {"non_finite", result.non_finite},
+        {"light_layers", layers_json(result)},
         {"device", device.info().name},
         {"bands",
          {{"from", plan.film.from_nm},

@@ -58,8 +58,11 @@ namespace reradiant {
     LAYOUT_BUFFERS(BUFFER)                                                                         \
     PATH_BUFFERS(BUFFER)
 
+// Those of light layers, each a buffer: the lights as the layer is lit by them.
+#define LAYER_BUFFERS(BUFFER) BUFFER(LightRecord, layer_lights)
+
 // Those of the film, which lie in strips (DeviceFilm): [pixel][row][lane] and
-// [pixel][FILM_STATISTICS].
+// [pixel][FILM_STATISTICS], of the image and of every layer.
 #define FILM_BUFFERS(BUFFER)                                                                       \
     BUFFER(shared_float, sums)                                                                     \
     BUFFER(shared_float, statistics)
@@ -68,6 +71,7 @@ namespace reradiant {
 struct BufferCounts {
 #define BUFFER(type, name) std::uint64_t name = 0;
     RENDER_BUFFERS(BUFFER)
+    LAYER_BUFFERS(BUFFER)
     FILM_BUFFERS(BUFFER)
 #undef BUFFER
 };
@@ -88,6 +92,7 @@ inline std::vector<BufferPlan> needed_buffers(const BufferCounts& counts) {
     if (counts.name > 0)                                                                           \
         buffers.push_back({#name, sizeof(type), counts.name});
     RENDER_BUFFERS(BUFFER)
+    LAYER_BUFFERS(BUFFER)
     FILM_BUFFERS(BUFFER)
 #undef BUFFER
     return buffers;

@@ -3,6 +3,7 @@
 #include "host/render/tables/environment_tables.h"
 #include "host/spectral/colour/rgb_basis.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace reradiant {
@@ -46,12 +47,6 @@ double append_spectrum(const Spectrum& spectrum, const Spectrum& factor, const W
     return sum / (plan.phases * plan.comb.count);
 }
 
-LightSpectrum plain_spectrum(const Spectrum& spectrum, const WavelengthPlan& wavelengths) {
-    LightSpectrum light;
-    light.mean = append_spectrum(spectrum, Spectrum::constant(1.0), wavelengths, light.lanes);
-    return light;
-}
-
 /// Returns the spectra that red, green and blue of an environment's image stand for.
 LightSpectrum image_spectrum(const EnvironmentLight& sky, const Image& image,
                              const WavelengthPlan& wavelengths) {
@@ -85,7 +80,29 @@ RenderFeatures features_of(const Light& light) {
     return features;
 }
 
+/// Plans the layers, and counts their floats.
+void add_layers(LightPlan& plan, const Scene& scene, const WavelengthPlan& wavelengths) {
+    plan.layers = plan_light_layers(scene, wavelengths, plan);
+    plan.floats += plan.dark_floats();
+    for (const LightLayerPlan& layer : plan.layers)
+        for (const std::vector<float>& lanes : layer.spectra)
+            plan.floats += lanes.size();
+}
+
 } // namespace
+
+LightSpectrum plain_spectrum(const Spectrum& spectrum, const WavelengthPlan& wavelengths) {
+    LightSpectrum light;
+    light.mean = append_spectrum(spectrum, Spectrum::constant(1.0), wavelengths, light.lanes);
+    return light;
+}
+
+std::size_t LightPlan::dark_floats() const {
+    std::size_t most = 0;
+    for (const LightSpectrum& light : lights)
+        most = std::max(most, light.lanes.size());
+    return layers.empty() ? 0 : most;
+}
 
 RenderFeatures features_of_lights(const Scene& scene) {
     RenderFeatures features;
@@ -94,7 +111,7 @@ RenderFeatures features_of_lights(const Scene& scene) {
     return features;
 }
 
-LightPlan plan_lights(const Scene& scene, const WavelengthPlan& wavelengths) {
+LightPlan plan_lights(const Scene& scene, const WavelengthPlan& wavelengths, bool with_layers) {
     LightPlan plan;
     for (const Light& light : scene.lights) {
         RenderFeatures features = features_of(light);
@@ -116,6 +133,8 @@ LightPlan plan_lights(const Scene& scene, const WavelengthPlan& wavelengths) {
         plan.floats += plan.lights.back().lanes.size();
         plan.features.add(features);
     }
+    if (with_layers)
+        add_layers(plan, scene, wavelengths);
     return plan;
 }
 

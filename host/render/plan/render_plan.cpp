@@ -73,7 +73,7 @@ public:
     std::uint64_t least_bytes() {
         plan_.features = features(features_of_lights(scene_));
         count_paths();
-        count_film();
+        count_film(options_.light_groups ? most_light_layers(scene_) : 0);
         return plan_.device_bytes() + plan_.host_bytes;
     }
 
@@ -82,14 +82,14 @@ public:
         plan_.film = film_layout(plan_.wavelengths, plan_.film.band_variance, plan_.film.scatter);
         plan_.film.independent_samples = plan_.sequence_blocks == 0;
         plan_.film.begins_odd = options_.first_sample % 2 == 1;
-        plan_.lights = plan_lights(scene_, plan_.wavelengths);
+        plan_.lights = plan_lights(scene_, plan_.wavelengths, options_.light_groups);
         for (std::size_t i = 0; i < scene_.materials.size(); ++i)
             plan_.materials[i] =
                 plan_material(scene_.materials[i], plan_.materials[i].choice, plan_.wavelengths);
         plan_.features = features(plan_.lights.features);
         find_passed_sheets();
         count_paths();
-        count_film();
+        count_film(plan_.lights.layers.size());
         count_tables();
         check_memory(plan_.device_bytes() + plan_.host_bytes);
         return std::move(plan_);
@@ -186,17 +186,18 @@ private:
 
     /// The film goes as the image comes, but for observers of passes, who see an image beside it; a
     /// checkpoint is read as a whole.
-    void count_film() {
+    void count_film(std::uint64_t layers) {
         const auto bands = static_cast<std::uint64_t>(plan_.wavelengths.film.count);
         const std::uint64_t row = static_cast<std::uint64_t>(plan_.wavelengths.phases) * lanes();
         BufferCounts& counts = plan_.counts;
-        counts.sums = plan_.pixels * plan_.film.floats_per_pixel();
-        counts.statistics = plan_.pixels * film_statistics_per_pixel;
+        counts.sums = (1 + layers) * plan_.pixels * plan_.film.floats_per_pixel();
+        counts.statistics = (1 + layers) * plan_.pixels * film_statistics_per_pixel;
         counts.film_bands = row;
         counts.film_weights = 2 * row;
         counts.y_weights = static_cast<std::uint64_t>(plan_.film.lanes);
         // values, variances by their two estimates, counts; what each pixel adds to the error
-        std::uint64_t floats = plan_.pixels * ((plan_.film.band_variance ? 3 : 1) * bands + 3);
+        std::uint64_t floats =
+            plan_.pixels * ((plan_.film.band_variance ? 3 : 1) * bands + 3 + layers * bands);
         if (options_.adaptive)
             floats += plan_.pixels * (1 + sizeof(PixelSamples) / sizeof(float));
         if (options_.resume)
@@ -210,6 +211,7 @@ private:
             scene_.surfaces.empty() ? scene_.materials.size() : scene_.surfaces.size();
         counts.textures = scene_.textures.size();
         counts.lights = scene_.lights.size();
+        counts.layer_lights = plan_.lights.layers.size() * counts.lights;
         counts.tables = plan_.lights.floats + texture_floats(scene_);
         const std::uint64_t choices = static_cast<std::uint64_t>(choice_count(plan_.features)) + 1;
         counts.materials = 0;

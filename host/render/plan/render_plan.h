@@ -23,7 +23,7 @@ struct RenderPlan {
     std::vector<std::uint32_t> passed_sheets;
     LightPlan lights;
     RenderFeatures features;
-    FilmLayout film;
+    FilmLayout film; ///< of the image and of every layer
 
     std::uint64_t pixels = 0;
     std::uint32_t path_capacity = 0; ///< paths of a batch at most
@@ -38,6 +38,7 @@ struct RenderPlan {
     std::vector<std::string> notes; ///< the model of each material and why
 
     std::vector<BufferPlan> buffers() const { return needed_buffers(counts); }
+    std::uint64_t films() const { return 1 + lights.layers.size(); }
     std::uint64_t device_bytes() const;
     /// A line for every feature that kernels lack and every wavelength that is not sampled.
     std::vector<std::string> left_out() const;

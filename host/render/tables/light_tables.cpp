@@ -93,6 +93,24 @@ void set_selection(std::vector<LightRecord>& lights, const std::vector<double>& 
     }
 }
 
+/// The lights with what each layer has of their spectra.
+void append_layers(const LightPlan& plan, SceneTables& tables) {
+    if (plan.layers.empty())
+        return;
+    const auto dark = static_cast<std::uint32_t>(tables.tables.size());
+    tables.tables.resize(tables.tables.size() + plan.dark_floats(), 0.0f);
+    for (const LightLayerPlan& layer : plan.layers) {
+        std::vector<LightRecord> lights = tables.lights;
+        for (std::size_t i = 0; i < lights.size(); ++i) {
+            const std::vector<float>& lanes = layer.spectra[i];
+            lights[i].spectrum =
+                lanes.empty() ? dark : static_cast<std::uint32_t>(tables.tables.size());
+            tables.tables.insert(tables.tables.end(), lanes.begin(), lanes.end());
+        }
+        tables.layer_lights.push_back(std::move(lights));
+    }
+}
+
 } // namespace
 
 void append_lights(const Scene& scene, const LightPlan& plan, SceneTables& tables) {
@@ -117,6 +135,7 @@ void append_lights(const Scene& scene, const LightPlan& plan, SceneTables& table
         if (powers[i] > 0.0)
             tables.sampled_lights = static_cast<std::uint32_t>(i + 1);
     tables.environment = plan.environment;
+    append_layers(plan, tables);
 }
 
 CameraRecord camera_record(const Camera& camera, const FilmSettings& film) {

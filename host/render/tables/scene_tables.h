@@ -20,6 +20,7 @@ struct SceneTables {
     std::vector<SurfaceRecord> surfaces;
     std::vector<TextureRecord> textures;
     std::vector<LightRecord> lights;
+    std::vector<std::vector<LightRecord>> layer_lights; ///< `lights` as each layer is lit by them
     std::vector<WalkPartRecord> walk_parts; ///< parts of the materials that are walked through
     std::vector<float> tables;
     std::uint32_t sampled_lights = 0; ///< lights that light sampling can choose, first in `lights`

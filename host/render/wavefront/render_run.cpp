@@ -25,6 +25,18 @@ void finish_film(RenderResult& result, Wavefront& wavefront, FilmResolver resolv
     result.image = resolver.take();
 }
 
+/// Takes the films of the layers out of the wavefront, as finish_film does with the image's.
+void finish_layers(RenderResult& result, Wavefront& wavefront, const RenderPlan& plan) {
+    const int bands = plan.wavelengths.film.count;
+    for (std::size_t k = 0; k < plan.lights.layers.size(); ++k) {
+        LightLayer layer = plan.lights.layers[k].layer;
+        layer.values.reserve(plan.pixels * static_cast<std::size_t>(bands));
+        wavefront.films()[k + 1].take(
+            [&](const FilmStrip& strip) { append_means(strip, plan.film, bands, layer.values); });
+        result.light_layers.push_back(std::move(layer));
+    }
+}
+
 void collect(RenderResult& result, const Wavefront& wavefront, const RenderPlan& plan,
              const SceneTables& tables) {
     const WavefrontStatistics& statistics = wavefront.statistics();
@@ -145,6 +157,7 @@ RenderResult RenderRun::finish_with_image() {
     if (estimated_samples_ != state_.samples) // it was interrupted, or resumed at its end
         estimate_error();
     finish_film(result_, wavefront_, film_resolver(plan_, scene_));
+    finish_layers(result_, wavefront_, plan_);
     return finish();
 }
 

@@ -88,7 +88,8 @@ RenderResult render_together(const Scene& scene, const Device& device, const Ren
         const double before = rendering.seconds();
         dispenser.begin_round(round_seconds(options, before, is_watched), before);
         render_round(rendering, options, team, dispenser, progress);
-        add_films(rendering.wavefront().film(), rendering.plan().film, team);
+        for (DeviceFilm& film : rendering.wavefront().films())
+            add_films(film, rendering.plan().film, team);
         if (team.leads())
             rendering.after_pass(dispenser.handed_out(), observe,
                                  [&](const RenderProgress&) { return !dispenser.interrupted(); });

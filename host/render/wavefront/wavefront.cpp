@@ -67,7 +67,8 @@ Wavefront::Wavefront(const Device& device, const Geometry& geometry, const Rende
     opencl_checked("setting up the renderer", [&] {
         build_kernels(plan.features, build);
         buffers_ = {device, plan, scene};
-        film_ = {device, plan.film, static_cast<std::uint32_t>(plan.pixels)};
+        for (std::uint64_t film = 0; film < plan.films(); ++film)
+            films_.emplace_back(device, plan.film, static_cast<std::uint32_t>(plan.pixels));
         device_.opencl().queue.finish();
     });
 }
@@ -108,12 +109,13 @@ void Wavefront::trace_pixels(const BatchRecord& pass,
         for (std::uint32_t done = 0; done < pass.samples;) {
             const std::uint32_t together = std::min(pass.samples - done, render_.capacity);
             const std::uint32_t most = render_.capacity / together;
-            for (const DeviceFilm::Strip& strip : film_.strips()) {
+            for (std::size_t s = 0; s < film().strips().size(); ++s) {
+                const DeviceFilm::Strip& strip = film().strips()[s];
                 const std::uint32_t end = place_of(strip.first_pixel + strip.pixels);
                 for (std::uint32_t at = place_of(strip.first_pixel); at < end; at += most)
-                    trace_batch({&strip,
-                                 {pass.chosen, at, std::min(most, end - at),
-                                  pass.first_sample + done, together, strip.first_pixel}});
+                    trace_batch({pass.chosen, at, std::min(most, end - at),
+                                 pass.first_sample + done, together, strip.first_pixel},
+                                s);
             }
             done += together;
         }
@@ -121,13 +123,27 @@ void Wavefront::trace_pixels(const BatchRecord& pass,
     });
 }
 
-void Wavefront::trace_batch(const Batch& work) {
+void Wavefront::trace_batch(const BatchRecord& record, std::size_t strip) {
+    const Batch work{&film().strips()[strip], record};
     do
         trace_paths(work);
     while (!walks_fit());
     gather(work);
     add_to_film(work);
+    add_layers(record, strip);
     statistics_.paths += work.paths();
+}
+
+/// Gathers the batch's paths again, with what each layer has of the lights: the operators at their
+/// vertices are linear, so that layers add up to the image.
+void Wavefront::add_layers(const BatchRecord& record, std::size_t strip) {
+    for (std::size_t layer = 0; layer < buffers_.layer_lights.size(); ++layer) {
+        const Batch work{&films_[layer + 1].strips()[strip], record};
+        std::swap(buffers_.lights, buffers_.layer_lights[layer]);
+        gather(work);
+        std::swap(buffers_.lights, buffers_.layer_lights[layer]);
+        add_to_film(work);
+    }
 }
 
 void Wavefront::trace_paths(const Batch& work) {
@@ -285,7 +301,7 @@ void Wavefront::finish_kernels() {
 }
 
 std::size_t Wavefront::device_bytes() const {
-    return buffers_.bytes() + film_.bytes();
+    return buffers_.bytes() + films_.size() * film().bytes();
 }
 
 } // namespace reradiant

@@ -45,13 +45,17 @@ public:
     /// Adds so many samples of chosen pixels, which ascend. Needs RenderOptions::adaptive.
     void render_pass(std::span<const PixelSamples> pixels, std::uint32_t samples);
 
-    DeviceFilm& film() { return film_; }
-    const DeviceFilm& film() const { return film_; }
+    /// The film of the image.
+    DeviceFilm& film() { return films_.front(); }
+    const DeviceFilm& film() const { return films_.front(); }
+    /// That of the image, then one for each layer of the plan's lights.
+    std::span<DeviceFilm> films() { return films_; }
+    std::span<const DeviceFilm> films() const { return films_; }
     const WavefrontStatistics& statistics() const { return statistics_; }
     std::size_t device_bytes() const;
 
 private:
-    /// Pixels of one strip of the film.
+    /// Pixels of one strip of a film.
     struct Batch {
         const DeviceFilm::Strip* strip;
         BatchRecord record;
@@ -61,7 +65,8 @@ private:
     void build_kernels(const RenderFeatures& features, BuildStatistics& build);
     void trace_pixels(const BatchRecord& pass,
                       const std::function<std::uint32_t(std::uint32_t)>& place_of);
-    void trace_batch(const Batch& work);
+    void trace_batch(const BatchRecord& record, std::size_t strip);
+    void add_layers(const BatchRecord& record, std::size_t strip);
     void trace_paths(const Batch& work);
     bool walks_fit();
     /// Work-items for so many paths.
@@ -92,7 +97,7 @@ private:
     std::vector<std::pair<cl::Event, double*>> launched_;
     Kernel generate_, shade_, gather_, film_kernel_;
     WavefrontBuffers buffers_;
-    DeviceFilm film_;
+    std::vector<DeviceFilm> films_; ///< of equal strips
     /// Counts of the batch's paths that reach an even and an odd depth.
     std::array<std::uint32_t, 2> live_count_{};
 };

@@ -25,6 +25,8 @@ WavefrontBuffers::WavefrontBuffers(const Device& device, const RenderPlan& plan,
 #define BUFFER(type, name) name = filled(device, #name, scene.name, counts.name);
     SCENE_BUFFERS(BUFFER)
 #undef BUFFER
+    for (const std::vector<LightRecord>& layer : scene.layer_lights)
+        layer_lights.push_back(filled(device, "layer_lights", layer, counts.layer_lights));
     film_bands = filled(device, "film_bands", plan.film.lane_bands, counts.film_bands);
     film_weights = filled(device, "film_weights", plan.film.lane_weights, counts.film_weights);
     y_weights = filled(device, "y_weights", plan.film.y_weights, counts.y_weights);
@@ -38,6 +40,8 @@ std::size_t WavefrontBuffers::bytes() const {
 #define BUFFER(type, name) bytes += name.bytes();
     RENDER_BUFFERS(BUFFER)
 #undef BUFFER
+    for (const DeviceArray<LightRecord>& layer : layer_lights)
+        bytes += layer.bytes();
     return bytes;
 }
 

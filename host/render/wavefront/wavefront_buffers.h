@@ -4,6 +4,8 @@
 #include "host/render/plan/render_plan.h"
 #include "host/render/tables/scene_tables.h"
 
+#include <vector>
+
 namespace reradiant {
 
 /// The arrays of a render on its device but for the film's, as its plan foresees them.
@@ -18,6 +20,7 @@ struct WavefrontBuffers {
 #define BUFFER(type, name) DeviceArray<type> name;
     RENDER_BUFFERS(BUFFER)
 #undef BUFFER
+    std::vector<DeviceArray<LightRecord>> layer_lights; ///< as in SceneTables
 };
 
 } // namespace reradiant

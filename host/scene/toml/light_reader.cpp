@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 namespace reradiant {
 
 namespace {
@@ -62,16 +64,32 @@ Light read_environment_light(const TableReader& reader, LoadState& state) {
     return light;
 }
 
+/// Names of groups part what `--groups` says and name layers of files.
+std::string read_group(const TableReader& reader) {
+    constexpr std::size_t longest = 40;
+    const std::string name = reader.text_or("group", "");
+    const bool is_right = std::all_of(name.begin(), name.end(), [](char c) {
+        return c == '-' || c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
+               (c >= 'A' && c <= 'Z');
+    });
+    if (reader.has("group") && (name.empty() || name.size() > longest || !is_right))
+        reader.fail("group", "the name of a group is not made of 1 to 40 letters, digits, - and _",
+                    "name it like \"window\" or \"uv-lamp\"");
+    return name;
+}
+
 } // namespace
 
 Light read_light(const toml::table& table, const std::string& file, std::size_t index,
-                 LoadState& state) {
+                 LoadState& state, std::string& group) {
     const std::string name = fmt::format("[[light]] {}", index);
     const std::string type = type_of_table(
         table, file, name, {"rectangle", "sphere", "point", "directional", "environment"});
     const auto keys = [&](std::vector<std::string> own) {
-        own.insert(own.begin(), "type");
-        return TableReader(table, file, fmt::format("{} ({})", name, type), own);
+        own.insert(own.begin(), {"type", "group"});
+        const TableReader reader(table, file, fmt::format("{} ({})", name, type), own);
+        group = read_group(reader);
+        return reader;
     };
     if (type == "rectangle")
         return read_rectangle_light(keys({"center", "edge_u", "edge_v", "radiance"}), state);

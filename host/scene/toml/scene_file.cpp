@@ -118,7 +118,8 @@ void read_lights(const TableReader& root, Scene& scene, LoadState& state) {
     const auto lights = root.tables("light");
     int skies = 0, images = 0;
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        scene.lights.push_back(read_light(*lights[i], root.file(), i, state));
+        scene.lights.push_back(
+            read_light(*lights[i], root.file(), i, state, scene.light_groups.emplace_back()));
         if (const auto* sky = std::get_if<EnvironmentLight>(&scene.lights.back())) {
             ++skies;
             images += sky->image >= 0 ? 1 : 0;

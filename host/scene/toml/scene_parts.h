@@ -7,9 +7,9 @@
 
 namespace reradiant {
 
-/// Reads a [[light]] table; `index` is for messages.
+/// Reads a [[light]] table, and the group that it names (or ""); `index` is for messages.
 Light read_light(const toml::table& table, const std::string& file, std::size_t index,
-                 LoadState& state);
+                 LoadState& state, std::string& group);
 
 /// Reads a [[shape]] table. `materials` maps names to indices into Scene::surfaces.
 Shape read_shape(const toml::table& table, const std::string& file, std::size_t index,

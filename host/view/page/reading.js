@@ -1,8 +1,8 @@
 // What the page shows now, and what a pixel reads.
 const viewData = JSON.parse(document.getElementById('view-data').textContent);
-const materials = viewData.materials,
+const materials = unpacked,
   shaderParts = viewData.shaders;
-const lamps = viewData.lamps.map((lamp) => ({ name: lamp.name, values: decode(lamp.values, Float32Array) }));
+const lamps = viewData.lamps.map((lamp) => ({ name: lamp.name, values: decodeFloats(lamp.values) }));
 const SIZE = 512; // pixels of the picture's side
 const view = {
   material: 0,

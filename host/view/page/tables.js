@@ -3,35 +3,35 @@ const NODES = 65; // of a table, uniform in the square root of the cosine
 
 function unpackLayer(layer) {
   for (const key of ['ior', 'absorption', 'scattering', 'reflectance'])
-    if (layer[key]) layer[key] = decode(layer[key], Float32Array);
-  if (layer.film) layer.film.ior = decode(layer.film.ior, Float32Array);
+    if (layer[key]) layer[key] = decodeFloats(layer[key]);
+  if (layer.film) layer.film.ior = decodeFloats(layer.film.ior);
   if (layer.flakes) unpackConductor(layer.flakes);
 }
 function unpackConductor(conductor) {
-  for (const key of ['ior', 'kappa', 'reflectance']) conductor[key] = decode(conductor[key], Float32Array);
-  if (conductor.film) conductor.film.ior = decode(conductor.film.ior, Float32Array);
+  for (const key of ['ior', 'kappa', 'reflectance']) conductor[key] = decodeFloats(conductor[key]);
+  if (conductor.film) conductor.film.ior = decodeFloats(conductor.film.ior);
 }
 function unpackGrid(grid) {
-  grid.numbers = decode(grid.numbers, Float32Array);
+  grid.numbers = decodeFloats(grid.numbers);
   grid.stride = 2 + grid.tables * NODES;
   for (const shape of grid.shapes || [])
     for (const lobe of shape.lobes)
-      for (const key of ['ratio', 'returned']) if (lobe[key]) lobe[key] = decode(lobe[key], Float32Array);
+      for (const key of ['ratio', 'returned']) if (lobe[key]) lobe[key] = decodeFloats(lobe[key]);
   if (grid.orenNayar)
-    for (const key of ['albedo', 'spread']) grid.orenNayar[key] = decode(grid.orenNayar[key], Float32Array);
+    for (const key of ['albedo', 'spread']) grid.orenNayar[key] = decodeFloats(grid.orenNayar[key]);
 }
 function unpackMaterial(material) {
   material.layers.forEach(unpackLayer);
   const substrate = material.substrate;
   if (substrate.type === 'conductor') unpackConductor(substrate);
-  else substrate.reflectance = decode(substrate.reflectance, Float32Array);
+  else substrate.reflectance = decodeFloats(substrate.reflectance);
   const shifted = substrate.reradiation;
   for (const key of ['emission', 'excitation', 'dense'])
-    if (shifted && shifted[key]) shifted[key] = decode(shifted[key], Float32Array);
+    if (shifted && shifted[key]) shifted[key] = decodeFloats(shifted[key]);
   for (const model of material.models) unpackGrid(material[model]);
   for (const key of ['numbers', 'through'])
-    if (material.dyed) material.dyed[key] = decode(material.dyed[key], Float32Array);
-  material.weights = decode(material.weights, Float32Array);
+    if (material.dyed) material.dyed[key] = decodeFloats(material.dyed[key]);
+  material.weights = decodeFloats(material.weights);
   return material;
 }
 

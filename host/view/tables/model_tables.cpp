@@ -105,7 +105,11 @@ Json oren_nayar_json(const Material& material, const WavelengthGrid& bands) {
 
 std::string encoded_floats(const std::vector<double>& values) {
     const std::vector<float> floats(values.begin(), values.end());
-    return base64({reinterpret_cast<const char*>(floats.data()), floats.size() * sizeof(float)});
+    std::string planes(floats.size() * sizeof(float), '\0');
+    for (std::size_t i = 0; i < planes.size(); ++i)
+        planes[i % sizeof(float) * floats.size() + i / sizeof(float)] =
+            reinterpret_cast<const char*>(floats.data())[i];
+    return base64(planes);
 }
 
 Json adding_tables(const Material& material, const WavelengthGrid& bands, bool with_sliders) {

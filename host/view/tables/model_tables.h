@@ -18,7 +18,8 @@ nlohmann::ordered_json adding_tables(const Material& material, const WavelengthG
 nlohmann::ordered_json weidlich_wilkie_tables(const Material& material, const WavelengthGrid& bands,
                                               bool with_sliders);
 
-/// Numbers as base64 of little-endian 32-bit floats.
+/// Numbers as base64 of little-endian 32-bit floats, of which all first bytes stand before all
+/// second ones and so on: so that they pack well (host/view/page/start.js).
 std::string encoded_floats(const std::vector<double>& values);
 
 } // namespace reradiant

@@ -6,6 +6,7 @@
 #include "tools/commands/probe/probe_places.h"
 #include "tools/program/command.h"
 #include "tools/program/display_options.h"
+#include "tools/program/groups_option.h"
 #include "tools/program/outputs.h"
 
 #include <fmt/core.h>
@@ -19,14 +20,14 @@ namespace {
 struct ProbeCommand {
     std::filesystem::path image, csv, plot;
     std::vector<std::string> at, regions;
-    std::string lamp = "D65";
+    std::string lamp = "D65", groups;
     double white_luminance = 1.0;
 };
 
 /// Errors of a place name the image.
 ProbedImage probe_file(const ProbeCommand& command, const std::vector<ImageRegion>& places,
                        const Xyz& white) {
-    const SpectralImage image = read_spectral_exr(command.image);
+    const SpectralImage image = read_image(command.image, parse_groups_option(command.groups));
     try {
         return probe(image, places, white);
     } catch (const Error& error) {
@@ -68,6 +69,7 @@ void add_probe_command(Program& program, CommandContext& context) {
     app.option("--region", command->regions,
                "rectangle X0,Y0,X1,Y1 with both its corners (repeatable)")
         .one_at_a_time();
+    add_groups_option(app, command->groups);
     app.option("-o,--output", command->csv, "CSV of spectra, standard errors and ratios");
     app.option("--plot", command->plot, "SVG plot of the spectra with 95 % intervals");
     app.option("--lamp", command->lamp,
