@@ -116,6 +116,9 @@ TEST_F(FigureCommand, WhatIsWrongIsSaidAtItsPlace) {
     expect_refusal("[[image]]\nname = \"a\"\nfile = \"none.exr\"\n", "3:");
     expect_refusal("[[image]]\nname = \"a\"\nfile = \"f.toml\"\n", "3:");
     expect_refusal(std::string(image) + "exposure = \"shared\"\n", "4:");
+    expect_refusal(std::string(image) + "groups = { day = 1 }\n", "4:");
+    expect_refusal(std::string(image) + "groups = { day = -1 }\n", "4:");
+    expect_refusal(std::string(image) + "groups = 1\n", "4:");
     expect_refusal(std::string(image) + "crop = [0, 0, 12, 7]\n", "4:");
     expect_refusal(std::string(image) + "crop = [5, 0, 4, 7]\n", "4:");
     expect_refusal(good + image, "9:");

@@ -2,6 +2,7 @@
 
 #include "host/film/colour_image.h"
 #include "host/film/display/picture_levels.h"
+#include "tools/program/groups_option.h"
 
 #include <algorithm>
 
@@ -20,7 +21,8 @@ auto placed_at(const SourcePosition& position, const Action& action) {
 }
 
 SpectralImage read(const ImageRequest& request) {
-    return placed_at(request.position, [&] { return read_spectral_exr(request.file); });
+    return placed_at(request.light_factors.empty() ? request.position : request.light_position,
+                     [&] { return read_image(request.file, request.light_factors); });
 }
 
 /// The exposure, EV, that suits all images whose exposure is shared: that of the brightest.

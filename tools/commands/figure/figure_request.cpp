@@ -47,6 +47,7 @@ private:
     void read_develop(const TableReader& reader, ImageRequest& image) const;
     void read_exposure(const TableReader& reader, ImageRequest& image) const;
     void read_image(const toml::table& table);
+    void read_groups(const toml::table& table, ImageRequest& image) const;
     MarkRequest read_mark(const toml::table& table, std::size_t index) const;
     void read_plot(const toml::table& table);
     void read_swatches(const toml::table& table);
@@ -104,6 +105,15 @@ void FigureReader::read_develop(const TableReader& reader, ImageRequest& image) 
     }
 }
 
+void FigureReader::read_groups(const toml::table& table, ImageRequest& image) const {
+    image.light_position = position_of(root_.file(), table);
+    for (const auto& [name, factor] : table) {
+        const SourcePosition position = position_of(root_.file(), name.source());
+        image.light_factors[std::string(name.str())] =
+            number_at(factor, position, "a factor of a light group", NumberRange::at_least(0));
+    }
+}
+
 MarkRequest FigureReader::read_mark(const toml::table& table, std::size_t index) const {
     const TableReader reader(table, root_.file(), "[[image.mark]] " + std::to_string(index + 1),
                              {"name", "label", "at", "radius", "region"});
@@ -130,7 +140,7 @@ MarkRequest FigureReader::read_mark(const toml::table& table, std::size_t index)
 void FigureReader::read_image(const toml::table& table) {
     const TableReader reader(
         table, root_.file(), "[[image]] " + std::to_string(request_.images.size() + 1),
-        {"name", "title", "file", "exposure", "white", "gamut", "crop", "mark"});
+        {"name", "title", "file", "groups", "exposure", "white", "gamut", "crop", "mark"});
     ImageRequest image;
     image.name = reader.text("name");
     names_.add(image.name, PanelReference::Kind::Image, request_.images.size(),
@@ -138,6 +148,8 @@ void FigureReader::read_image(const toml::table& table) {
     image.title = reader.text_or("title", "");
     image.position = reader.position_of_key("file");
     image.file = files_.resolve(reader.text("file"), image.position);
+    if (reader.has("groups"))
+        read_groups(reader.plain_table("groups"), image);
     image.has_shared_exposure = true;
     read_develop(head_, image);
     read_develop(reader, image);

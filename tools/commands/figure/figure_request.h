@@ -23,6 +23,8 @@ struct ImageRequest {
     std::string name, title;
     std::filesystem::path file;
     SourcePosition position;
+    LightFactors light_factors = {}; ///< of the image's light groups
+    SourcePosition light_position = {};
     DevelopOptions develop;
     bool has_shared_exposure = false; ///< that of all such images, which is chosen by them together
     std::optional<ImageRegion> crop = {};
