@@ -1,11 +1,13 @@
 #include "reradiant/scene_file.h"
 
 #include "host/base/logging.h"
+#include "host/scene/lights/idle_lamps.h"
 #include "host/scene/mitsuba/mitsuba_import.h"
 #include "host/scene/model/joined_materials.h"
 #include "host/scene/model/matrix_grids.h"
 #include "host/scene/model/surface_builder.h"
 #include "host/scene/model/textured_value.h"
+#include "host/scene/toml/included_files.h"
 #include "host/scene/toml/material_reader.h"
 #include "host/scene/toml/scene_parts.h"
 #include "host/scene/toml/scene_table.h"
@@ -78,18 +80,24 @@ IntegratorSettings read_integrator(const TableReader& reader) {
 
 std::map<std::string, int> read_materials(const TableReader& root, Scene& scene, LoadState& state) {
     std::map<std::string, int> indices;
-    TextureScope textures(root, state);
+    const IncludedFiles included(root, state);
+    TextureScope textures;
+    for (const TableReader& file : included.readers())
+        textures.add(file, state);
     state.texture_scope = &textures;
     SurfaceBuilder builder;
-    for (const toml::table* table : root.tables("material")) {
-        MaterialReading reading = read_material(*table, root.file(), MaterialPlace::Scene, state);
-        if (!indices.emplace(reading.representative.name, static_cast<int>(indices.size())).second)
-            throw_input_error(
-                position_of(root.file(), table->find("name")->first.source()),
-                fmt::format("two materials are called \"{}\"", reading.representative.name),
-                "give each its own name");
-        builder.add(std::move(reading));
-    }
+    for (const TableReader& file : included.readers())
+        for (const toml::table* table : file.tables("material")) {
+            MaterialReading reading =
+                read_material(*table, file.file(), MaterialPlace::Scene, state);
+            if (!indices.emplace(reading.representative.name, static_cast<int>(indices.size()))
+                     .second)
+                throw_input_error(
+                    position_of(file.file(), table->find("name")->first.source()),
+                    fmt::format("two materials are called \"{}\"", reading.representative.name),
+                    "give each its own name");
+            builder.add(std::move(reading));
+        }
     builder.finish(indices, scene, state);
     state.texture_scope = nullptr;
     scene.textures = std::move(state.textures);
@@ -114,26 +122,40 @@ std::array<double, 2> used_range_nm(const Material& material,
 }
 
 /// Constant environments add up to one; an image is looked up alone.
-void read_lights(const TableReader& root, Scene& scene, LoadState& state) {
-    const auto lights = root.tables("light");
+/// Returns the place of each light.
+std::vector<SourcePosition> read_all_lights(const TableReader& root, Scene& scene,
+                                            LoadState& state) {
+    std::vector<SourcePosition> places;
+    const auto tables = root.tables("light");
     int skies = 0, images = 0;
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-        scene.lights.push_back(read_light(*lights[i], root.file(), i, state));
-        if (const auto* sky = std::get_if<EnvironmentLight>(&scene.lights.back())) {
-            ++skies;
-            images += sky->image >= 0 ? 1 : 0;
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        for (Light& light : read_lights(*tables[i], root.file(), i, state)) {
+            if (const auto* sky = std::get_if<EnvironmentLight>(&light)) {
+                ++skies;
+                images += sky->image >= 0 ? 1 : 0;
+            }
+            scene.lights.push_back(std::move(light));
+            places.push_back(position_of(root.file(), *tables[i]));
         }
         if (images > 0 && skies > 1)
-            throw_input_error(position_of(root.file(), *lights[i]),
+            throw_input_error(position_of(root.file(), *tables[i]),
                               "an environment image stands beside another environment",
                               "put both into one image");
     }
+    return places;
+}
+
+void warn_of_idle_lamps(const Scene& scene, const std::vector<SourcePosition>& places,
+                        LoadState& state) {
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        if (const std::string reason = idle_reason(scene.lights[i], scene); !reason.empty())
+            state.warn(places[i], fmt::format("the light lights nothing: {}", reason));
 }
 
 Scene read_scene(const toml::table& table, const std::filesystem::path& file, LoadState& state) {
     const TableReader root(
         table, file.string(), "a scene",
-        {"film", "camera", "integrator", "light", "shape", "material", "texture"});
+        {"film", "camera", "integrator", "light", "shape", "material", "texture", "include"});
     Scene scene;
     scene.file = file;
     scene.film = read_film(root.table("film", {"width", "height", "bands_nm"}));
@@ -141,13 +163,14 @@ Scene read_scene(const toml::table& table, const std::filesystem::path& file, Lo
         "camera", {"origin", "target", "up", "fov_deg", "lens_radius", "focus_distance"}));
     if (root.has("integrator"))
         scene.integrator = read_integrator(root.table("integrator", {"max_depth", "min_depth"}));
-    read_lights(root, scene, state);
+    const std::vector<SourcePosition> light_places = read_all_lights(root, scene, state);
     const auto materials = read_materials(root, scene, state);
     const auto shapes = root.tables("shape");
     for (std::size_t i = 0; i < shapes.size(); ++i)
         scene.shapes.push_back(read_shape(*shapes[i], root.file(), i, materials, state));
     scene.images = std::move(state.images);
     warn_outside_bands(scene, state);
+    warn_of_idle_lamps(scene, light_places, state);
     scene.hash = state.digest();
     return scene;
 }
