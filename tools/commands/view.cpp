@@ -1,6 +1,7 @@
 #include "host/base/atomic_file.h"
 #include "host/base/logging.h"
 #include "host/report/json_file.h"
+#include "host/scene/lights/lamp_file.h"
 #include "host/scene/model/named_files.h"
 #include "host/view/export/exchange_files.h"
 #include "host/view/view_page.h"
@@ -47,7 +48,7 @@ std::vector<Lamp> asked_lamps(const ViewOptions& options) {
             }
     }
     for (const fs::path& file : options.lamp_files)
-        lamps.push_back(read_lamp(file));
+        lamps.push_back(read_lamp_file(file));
     return lamps;
 }
 
