@@ -1,6 +1,6 @@
 #include "host/geometry/geometry.h"
 
-#include "host/geometry/embree_callbacks.h"
+#include "host/geometry/embree_scene.h"
 #include "host/geometry/embree_version.h"
 #include "host/geometry/opacity.h"
 #include "host/geometry/ray_packet.h"
@@ -120,18 +120,7 @@ std::vector<std::uint32_t> places_of(std::size_t count) {
 
 struct Geometry::Implementation {
     Implementation(const Scene& scene, bool wants_parameters);
-    ~Implementation();
-    Implementation(const Implementation&) = delete;
-    Implementation& operator=(const Implementation&) = delete;
 
-    template <typename Primitive>
-    void attach(const OwnedPrimitives<Primitive>& owned);
-    void attach(const OwnedMesh& mesh);
-    /// Returns a mesh for Embree, not yet attached to a scene.
-    RTCGeometry triangles_of(const MeshShape& mesh) const;
-    /// Returns the scene that holds a mesh for its instances.
-    RTCScene shared_scene(const MeshShape& mesh);
-    void check(const char* doing) const;
     /// Finds the nearest hits of the rays that `live` lists from `begin` to `end`.
     void hit(const RaysToHit& rays, std::size_t begin, std::size_t end) const;
     void hit(const RaysToHit& rays, Packet<RTCRayHit16>& packet) const;
@@ -150,122 +139,12 @@ struct Geometry::Implementation {
     Surfaces surfaces;
     Opacity opacity;
     bool parameters;
-    std::map<const MeshShape*, RTCScene> shared_scenes;
-    std::vector<const void*> sources; ///< by Embree's geometry number: what it was made of
-    std::atomic<std::ptrdiff_t> bytes{0};
-    std::size_t triangles = 0;
-    std::string version;
-    RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
+    EmbreeScene embree;
 };
 
 Geometry::Implementation::Implementation(const Scene& scene_in, bool wants_parameters)
     : surfaces(surfaces_of(scene_in)), opacity(scene_in),
-      parameters(wants_parameters || !opacity.is_empty()) {
-    device = rtcNewDevice(nullptr);
-    check("start");
-    rtcSetDeviceMemoryMonitorFunction(
-        device,
-        [](void* self, ssize_t change, bool) {
-            static_cast<Implementation*>(self)->bytes += change;
-            return true;
-        },
-        this);
-    version = fmt::format("Embree {}.{}.{}",
-                          rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION_MAJOR),
-                          rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION_MINOR),
-                          rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION_PATCH));
-    scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    attach(surfaces.spheres);
-    attach(surfaces.rectangles);
-    attach(surfaces.disks);
-    attach(surfaces.cylinders);
-    for (const OwnedMesh& mesh : surfaces.meshes)
-        attach(mesh);
-    rtcCommitScene(scene);
-    check("build its acceleration structure");
-}
-
-Geometry::Implementation::~Implementation() {
-    if (scene != nullptr)
-        rtcReleaseScene(scene);
-    for (const auto& [mesh, shared] : shared_scenes)
-        rtcReleaseScene(shared);
-    if (device != nullptr)
-        rtcReleaseDevice(device);
-}
-
-void Geometry::Implementation::check(const char* doing) const {
-    const RTCError error = rtcGetDeviceError(device);
-    if (error != RTC_ERROR_NONE || device == nullptr)
-        throw_runtime_error(
-            fmt::format("Embree cannot {} (error {})", doing, static_cast<int>(error)),
-            error == RTC_ERROR_OUT_OF_MEMORY ? "it is out of memory"
-                                             : "check the installation of Embree");
-}
-
-template <typename Primitive>
-void Geometry::Implementation::attach(const OwnedPrimitives<Primitive>& owned) {
-    sources.push_back(&owned);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned int>(owned.primitives.size()));
-    rtcSetGeometryUserData(geometry, const_cast<OwnedPrimitives<Primitive>*>(&owned));
-    rtcSetGeometryBoundsFunction(
-        geometry, [](const RTCBoundsFunctionArguments* a) { bounds_callback<Primitive>(a); },
-        nullptr);
-    rtcSetGeometryIntersectFunction(geometry, intersect_callback<Primitive>);
-    rtcSetGeometryOccludedFunction(geometry, occluded_callback<Primitive>);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned int>(sources.size() - 1));
-    rtcReleaseGeometry(geometry);
-}
-
-RTCGeometry Geometry::Implementation::triangles_of(const MeshShape& mesh) const {
-    const std::size_t vertices = mesh.positions.size() / 3;
-    const std::size_t count = mesh.indices.size() / 3;
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    // Embree reads 16 bytes at the last vertex, so it keeps its own padded copies.
-    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                              RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices);
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            3 * sizeof(std::uint32_t), count);
-    check("take memory for a mesh");
-    std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<float*>(positions));
-    std::copy(mesh.indices.begin(), mesh.indices.end(), static_cast<std::uint32_t*>(indices));
-    rtcCommitGeometry(geometry);
-    return geometry;
-}
-
-RTCScene Geometry::Implementation::shared_scene(const MeshShape& mesh) {
-    const auto [place, is_new] = shared_scenes.try_emplace(&mesh, nullptr);
-    if (is_new) {
-        place->second = rtcNewScene(device);
-        rtcSetSceneFlags(place->second, RTC_SCENE_FLAG_ROBUST);
-        RTCGeometry geometry = triangles_of(mesh);
-        rtcAttachGeometry(place->second, geometry);
-        rtcReleaseGeometry(geometry);
-        rtcCommitScene(place->second);
-    }
-    return place->second;
-}
-
-void Geometry::Implementation::attach(const OwnedMesh& owned) {
-    sources.push_back(&owned);
-    triangles += owned.mesh->indices.size() / 3;
-    RTCGeometry geometry = nullptr;
-    if (owned.placement) {
-        geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-        rtcSetGeometryInstancedScene(geometry, shared_scene(*owned.mesh));
-        const std::array<float, 12> matrix = owned.placement->matrix();
-        rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, matrix.data());
-        rtcCommitGeometry(geometry);
-    } else {
-        geometry = triangles_of(*owned.mesh);
-    }
-    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned int>(sources.size() - 1));
-    rtcReleaseGeometry(geometry);
-}
+      parameters(wants_parameters || !opacity.is_empty()), embree(surfaces) {}
 
 template <typename Primitive>
 HitRecord Geometry::Implementation::describe(const OwnedPrimitives<Primitive>& owned,
@@ -281,9 +160,7 @@ HitRecord Geometry::Implementation::describe(const RayRecord& record, const RTCR
                                              std::size_t k, double distance) const {
     const unsigned int index = found.hit.primID[k];
     const Ray ray = ray_of(record);
-    const unsigned int instance = found.hit.instID[0][k];
-    const void* source =
-        sources[instance != RTC_INVALID_GEOMETRY_ID ? instance : found.hit.geomID[k]];
+    const void* source = embree.source(found.hit.geomID[k], found.hit.instID[0][k]);
     if (source == &surfaces.spheres)
         return describe(surfaces.spheres, index, ray, distance);
     if (source == &surfaces.rectangles)
@@ -316,7 +193,7 @@ void Geometry::Implementation::hit(const RaysToHit& rays, Packet<RTCRayHit16>& p
     std::fill_n(found.hit.geomID, packet_rays, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(found.hit.instID[0], packet_rays, RTC_INVALID_GEOMETRY_ID);
     std::array<double, packet_rays> distances{}; // of shapes that are no meshes
-    embree_intersect(scene, packet.valid(), found, rays.coherent, distances.data());
+    embree_intersect(embree.scene(), packet.valid(), found, rays.coherent, distances.data());
     for (int i = 0; i < packet.count(); ++i) {
         const auto k = static_cast<std::size_t>(i);
         const std::uint32_t place = packet.place(i);
@@ -336,7 +213,7 @@ HitRecord Geometry::Implementation::nearest(const RayRecord& ray) const {
     RTCRayHit16& found = packet.rays();
     found.hit.geomID[0] = found.hit.instID[0][0] = RTC_INVALID_GEOMETRY_ID;
     std::array<double, packet_rays> distances{};
-    embree_intersect(scene, packet.valid(), found, false, distances.data());
+    embree_intersect(embree.scene(), packet.valid(), found, false, distances.data());
     return found.hit.geomID[0] == RTC_INVALID_GEOMETRY_ID ? no_hit()
                                                           : describe(ray, found, 0, distances[0]);
 }
@@ -372,7 +249,7 @@ std::uint64_t Geometry::Implementation::block(const RaysToBlock& rays, std::size
 }
 
 void Geometry::Implementation::block(const RaysToBlock& rays, Packet<RTCRay16>& packet) const {
-    embree_occluded(scene, packet.valid(), packet.rays());
+    embree_occluded(embree.scene(), packet.valid(), packet.rays());
     for (int i = 0; i < packet.count(); ++i) {
         const std::uint32_t place = packet.place(i);
         const bool is_met = packet.rays().tfar[static_cast<std::size_t>(i)] < 0.0f;
@@ -449,15 +326,15 @@ TraceStatistics Geometry::trace(const RaysToHit& rays, const RaysToBlock& shadow
 }
 
 std::size_t Geometry::triangle_count() const {
-    return implementation_->triangles;
+    return implementation_->embree.triangles();
 }
 
 std::size_t Geometry::memory_bytes() const {
-    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(implementation_->bytes, 0));
+    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(implementation_->embree.bytes(), 0));
 }
 
 const char* Geometry::library_version() const {
-    return implementation_->version.c_str();
+    return implementation_->embree.version().c_str();
 }
 
 } // namespace reradiant
