@@ -190,10 +190,10 @@ TEST_F(Lights, ASkyIsASunAndAnImageOfThreeParts) {
     const auto lights = read("type = \"sky\"\nsun_elevation_deg = 30\nsun_azimuth_deg = 90\n"
                              "scale = 2");
     ASSERT_EQ(lights.size(), 2u);
-    const auto& sun = std::get<DirectionalLight>(lights[0]);
+    const auto& sun = std::get<DirectionalLight>(lights[1]);
     expect_vector(sun.direction, {-std::sqrt(0.75), -0.5, 0});
     EXPECT_NEAR(sun.angle_deg, 0.533, 1e-12);
-    const auto& sky = std::get<EnvironmentLight>(lights[1]);
+    const auto& sky = std::get<EnvironmentLight>(lights[0]);
     EXPECT_EQ(sky.primaries.size(), 3u);
     EXPECT_EQ(sky.radiance(290.0), 0.0); // ozone leaves nothing below 300 nm
     EXPECT_GT(sky.radiance(320.0), 0.1);
@@ -202,6 +202,12 @@ TEST_F(Lights, ASkyIsASunAndAnImageOfThreeParts) {
     const ClearSkyLight light = clear_sky_light(model);
     EXPECT_NEAR(sun.irradiance(light.nm[30]), 2.0 * light.direct[30], 1e-12);
     EXPECT_EQ(read("type = \"sky\"\nsun_elevation_deg = 30\nsun = false").size(), 1u);
+    // the sun follows after the lights of all tables, so that these keep their places
+    const auto more = read("type = \"sky\"\nsun_elevation_deg = 30\n[[light]]\ntype = \"point\"\n"
+                           "position = [0, 3, 0]\nintensity = 1");
+    ASSERT_EQ(more.size(), 3u);
+    EXPECT_TRUE(std::holds_alternative<PointLight>(more[1]));
+    EXPECT_TRUE(std::holds_alternative<DirectionalLight>(more[2]));
 }
 
 TEST_F(Lights, ASkyRefusesWhatItIsNot) {

@@ -58,13 +58,12 @@ std::vector<Light> read_sky(const TableReader& reader, LoadState& state) {
     sky.image = static_cast<int>(state.images.size());
     state.images.push_back(std::move(image));
     state.image_is_linear.push_back(true);
-    std::vector<Light> lights;
+    std::vector<Light> lights{std::move(sky)};
     if (reader.flag_or("sun", true)) {
         DirectionalLight sun = sun_light(light, to_sun);
         sun.irradiance = sun.irradiance.scaled(scale);
         lights.emplace_back(std::move(sun));
     }
-    lights.emplace_back(std::move(sky));
     return lights;
 }
 

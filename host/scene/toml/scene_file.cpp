@@ -121,26 +121,32 @@ std::array<double, 2> used_range_nm(const Material& material,
                 : default_range_nm(material.is_fluorescent());
 }
 
-/// Constant environments add up to one; an image is looked up alone.
-/// Returns the place of each light.
+/// Constant environments add up to one; an image is looked up alone. The i-th light is that of the
+/// i-th table; the suns of skies follow after all. Returns the place of each light.
 std::vector<SourcePosition> read_all_lights(const TableReader& root, Scene& scene,
                                             LoadState& state) {
-    std::vector<SourcePosition> places;
     const auto tables = root.tables("light");
+    std::vector<SourcePosition> places;
+    std::vector<std::pair<Light, SourcePosition>> suns;
     int skies = 0, images = 0;
     for (std::size_t i = 0; i < tables.size(); ++i) {
-        for (Light& light : read_lights(*tables[i], root.file(), i, state)) {
-            if (const auto* sky = std::get_if<EnvironmentLight>(&light)) {
-                ++skies;
-                images += sky->image >= 0 ? 1 : 0;
-            }
-            scene.lights.push_back(std::move(light));
-            places.push_back(position_of(root.file(), *tables[i]));
+        const SourcePosition at = position_of(root.file(), *tables[i]);
+        std::vector<Light> read = read_lights(*tables[i], root.file(), i, state);
+        if (const auto* sky = std::get_if<EnvironmentLight>(&read.front())) {
+            ++skies;
+            images += sky->image >= 0 ? 1 : 0;
         }
         if (images > 0 && skies > 1)
-            throw_input_error(position_of(root.file(), *tables[i]),
-                              "an environment image stands beside another environment",
+            throw_input_error(at, "an environment image stands beside another environment",
                               "put both into one image");
+        scene.lights.push_back(std::move(read.front()));
+        places.push_back(at);
+        if (read.size() > 1)
+            suns.emplace_back(std::move(read[1]), at);
+    }
+    for (auto& [sun, at] : suns) {
+        scene.lights.push_back(std::move(sun));
+        places.push_back(at);
     }
     return places;
 }

@@ -10,7 +10,8 @@
 
 namespace reradiant {
 
-/// Reads a [[light]] table; `index` is for messages. A sky is two lights, or one without its sun.
+/// Reads a [[light]] table; `index` is for messages. A sky is two lights, its sun the
+/// second, or one without it.
 std::vector<Light> read_lights(const toml::table& table, const std::string& file, std::size_t index,
                                LoadState& state);
 
