@@ -63,7 +63,7 @@ LightSpectrum image_spectrum(const EnvironmentLight& sky, const Image& image,
     const double brightness = mean_over_sphere(image);
     if (!(brightness > 0.0))
         return light; // black: nothing to sample
-    const auto basis = rgb_basis();
+    const auto& basis = rgb_basis();
     const std::span<const Spectrum> primaries =
         sky.primaries.empty() ? std::span<const Spectrum>(basis) : sky.primaries;
     for (const Spectrum& primary : primaries)
