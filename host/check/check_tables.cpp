@@ -68,6 +68,33 @@ void fill_lights(CheckTables& tables) {
         tables.lights[i].cumulative = 0.25f * static_cast<float>(i + 1);
 }
 
+/// What lights_sample does not know: lamps of other shapes, and those with a cone.
+void fill_lamps(CheckTables& tables) {
+    LightRecord disk{};
+    disk.type = LIGHT_DISK;
+    disk.py = 2.0f;
+    disk.ux = disk.vz = 0.8f;
+    disk.ny = -1.0f;
+    disk.radius_or_area = 2.0f;
+    LightRecord mesh{};
+    mesh.type = LIGHT_MESH;
+    mesh.radius_or_area = 2.0f;
+    mesh.triangle_count = 2;
+    LightRecord spot = disk;
+    spot.type = LIGHT_SPOT;
+    spot.cone = 0.4f;
+    spot.full_cone = 0.1f;
+    LightRecord distant = spot;
+    distant.type = LIGHT_DISTANT;
+    distant.cone = 1e-5f;
+    const LightRecord lamps[] = {disk, mesh, spot, distant};
+    std::copy(std::begin(lamps), std::end(lamps), tables.lamps);
+    constexpr float triangles[] = {0.3f,  1.0f,                                            // shares
+                                   -1.0f, 2.0f, 0.0f, 0.2f, 2.0f, 0.0f, -1.0f, 2.5f, 1.0f, //
+                                   0.2f,  2.0f, 0.0f, 0.4f, 2.2f, 1.9f, -1.0f, 2.5f, 1.0f};
+    std::copy(std::begin(triangles), std::end(triangles), tables.triangles);
+}
+
 void fill_camera(CameraRecord& camera) {
     camera = {};
     camera.origin_y = 2.0f;
@@ -160,6 +187,7 @@ CheckTables check_tables() {
     // a slab of anisotropy 0.6 beneath the coat
     tables.lobes[1] = {0.6f, 0, 1, 0, NO_INDEX, NO_INDEX, 0.0f};
     fill_textures(tables);
+    fill_lamps(tables);
     fill_lights(tables);
     fill_camera(tables.camera);
     fill_environment(tables);

@@ -1,8 +1,10 @@
 #include "host/check/checked_function.h"
 
 #include "kernels/scene/camera.h"
+#include "kernels/scene/cone_lights.h"
 #include "kernels/scene/environment.h"
 #include "kernels/scene/lights.h"
+#include "kernels/scene/shaped_lights.h"
 
 namespace reradiant {
 
@@ -51,6 +53,30 @@ std::vector<CheckedFunction> lamp_functions() {
     };
 }
 
+#define LAMP_SAMPLE(label, file, arguments, sampled)                                               \
+    CHECKED_FUNCTION(label, file, (arguments), 6, light_sample, const LightSample s = sampled;     \
+                     out[0] = s.weight; out[1] = s.pdf; out[2] = s.distance;                       \
+                     CHECK_RESULT(3, s.direction))
+
+std::vector<CheckedFunction> other_lamp_functions() {
+    const Arguments above{place(4.0), place(1.5), place(4.0), unit(), unit()};
+    return {
+        LAMP_SAMPLE("shaped_lights_sample disk", "kernels/scene/shaped_lights.h", above,
+                    shaped_lights_sample(tables->lamps[0], tables->triangles, CHECK_VECTOR(0),
+                                         in[3], in[4])),
+            LAMP_SAMPLE("shaped_lights_sample mesh", "kernels/scene/shaped_lights.h", above,
+                        shaped_lights_sample(tables->lamps[1], tables->triangles, CHECK_VECTOR(0),
+                                             in[3], in[4])),
+            LAMP_SAMPLE("cone_lights_spot", "kernels/scene/cone_lights.h", above,
+                        cone_lights_spot(tables->lamps[2], CHECK_VECTOR(0))),
+            CHECKED_FUNCTION("cone_lights_distant", "kernels/scene/cone_lights.h",
+                             (Arguments{unit(), unit()}), 3, unit_vector,
+                             const LightSample s =
+                                 cone_lights_distant(tables->lamps[3], in[0], in[1]);
+                             CHECK_RESULT(0, s.direction)),
+    };
+}
+
 std::vector<CheckedFunction> sky_functions() {
     return {
         CHECKED_FUNCTION(
@@ -94,7 +120,7 @@ std::vector<CheckedFunction> camera_functions() {
 
 std::vector<CheckedFunction> light_functions() {
     std::vector<CheckedFunction> all = lamp_functions();
-    for (const auto& some : {sky_functions(), camera_functions()})
+    for (const auto& some : {other_lamp_functions(), sky_functions(), camera_functions()})
         all.insert(all.end(), some.begin(), some.end());
     return all;
 }

@@ -58,7 +58,9 @@ void bounds_callback(const RTCBoundsFunctionArguments* arguments) {
 inline bool takes_place(float t, RTCRayN* rays, RTCHitN* hits, unsigned int count, unsigned int i,
                         unsigned int shape, unsigned int primitive) {
     const float nearest = RTCRayN_tfar(rays, count, i);
-    const unsigned int found = RTCHitN_geomID(hits, count, i);
+    const unsigned int instance = RTCHitN_instID(hits, count, i, 0);
+    const unsigned int found =
+        instance != RTC_INVALID_GEOMETRY_ID ? instance : RTCHitN_geomID(hits, count, i);
     if (t != nearest || found == RTC_INVALID_GEOMETRY_ID)
         return t < nearest;
     return shape < found || (shape == found && primitive < RTCHitN_primID(hits, count, i));

@@ -1,7 +1,8 @@
 #include "host/geometry/geometry.h"
 
-#include "host/geometry/embree_callbacks.h"
+#include "host/geometry/embree_scene.h"
 #include "host/geometry/embree_version.h"
+#include "host/geometry/opacity.h"
 #include "host/geometry/ray_packet.h"
 #include "host/geometry/surfaces.h"
 
@@ -67,6 +68,11 @@ HitRecord record_of(const SurfaceHit& hit, const Owner& owner) {
     return r;
 }
 
+float cosine_of(const RayRecord& ray, const HitRecord& found) {
+    return found.normal_x * ray.direction_x + found.normal_y * ray.direction_y +
+           found.normal_z * ray.direction_z;
+}
+
 /// Moves the origin of a ray behind what it has met, beyond the error of that place, as kernels do
 /// (kernels/stages/rays.h).
 void go_on_behind(const HitRecord& found, float cosine, RayRecord& ray) {
@@ -114,21 +120,16 @@ std::vector<std::uint32_t> places_of(std::size_t count) {
 
 struct Geometry::Implementation {
     Implementation(const Scene& scene, bool wants_parameters);
-    ~Implementation();
-    Implementation(const Implementation&) = delete;
-    Implementation& operator=(const Implementation&) = delete;
 
-    template <typename Primitive>
-    void attach(const OwnedPrimitives<Primitive>& owned);
-    void attach(const OwnedMesh& mesh);
-    void check(const char* doing) const;
     /// Finds the nearest hits of the rays that `live` lists from `begin` to `end`.
     void hit(const RaysToHit& rays, std::size_t begin, std::size_t end) const;
     void hit(const RaysToHit& rays, Packet<RTCRayHit16>& packet) const;
     /// Marks those of the listed rays that something blocks; returns how many were active.
     std::uint64_t block(const RaysToBlock& rays, std::size_t begin, std::size_t end) const;
     void block(const RaysToBlock& rays, Packet<RTCRay16>& packet) const;
-    bool passes_sheets(const RaysToBlock& rays, std::uint32_t place, bool is_met) const;
+    bool goes_through(const RaysToBlock& rays, std::uint32_t place, bool is_met) const;
+    HitRecord behind_openings(RayRecord ray, HitRecord found) const;
+    HitRecord nearest(const RayRecord& ray) const;
     HitRecord describe(const RayRecord& record, const RTCRayHit16& found, std::size_t k,
                        double distance) const;
     template <typename Primitive>
@@ -136,93 +137,14 @@ struct Geometry::Implementation {
                        double t) const;
 
     Surfaces surfaces;
+    Opacity opacity;
     bool parameters;
-    std::vector<const void*> sources; ///< by Embree's geometry number: what it was made of
-    std::atomic<std::ptrdiff_t> bytes{0};
-    std::size_t triangles = 0;
-    std::string version;
-    RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
+    EmbreeScene embree;
 };
 
 Geometry::Implementation::Implementation(const Scene& scene_in, bool wants_parameters)
-    : surfaces(surfaces_of(scene_in)), parameters(wants_parameters) {
-    device = rtcNewDevice(nullptr);
-    check("start");
-    rtcSetDeviceMemoryMonitorFunction(
-        device,
-        [](void* self, ssize_t change, bool) {
-            static_cast<Implementation*>(self)->bytes += change;
-            return true;
-        },
-        this);
-    version = fmt::format("Embree {}.{}.{}",
-                          rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION_MAJOR),
-                          rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION_MINOR),
-                          rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION_PATCH));
-    scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    attach(surfaces.spheres);
-    attach(surfaces.rectangles);
-    attach(surfaces.disks);
-    for (const OwnedMesh& mesh : surfaces.meshes)
-        attach(mesh);
-    rtcCommitScene(scene);
-    check("build its acceleration structure");
-}
-
-Geometry::Implementation::~Implementation() {
-    if (scene != nullptr)
-        rtcReleaseScene(scene);
-    if (device != nullptr)
-        rtcReleaseDevice(device);
-}
-
-void Geometry::Implementation::check(const char* doing) const {
-    const RTCError error = rtcGetDeviceError(device);
-    if (error != RTC_ERROR_NONE || device == nullptr)
-        throw_runtime_error(
-            fmt::format("Embree cannot {} (error {})", doing, static_cast<int>(error)),
-            error == RTC_ERROR_OUT_OF_MEMORY ? "it is out of memory"
-                                             : "check the installation of Embree");
-}
-
-template <typename Primitive>
-void Geometry::Implementation::attach(const OwnedPrimitives<Primitive>& owned) {
-    sources.push_back(&owned);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned int>(owned.primitives.size()));
-    rtcSetGeometryUserData(geometry, const_cast<OwnedPrimitives<Primitive>*>(&owned));
-    rtcSetGeometryBoundsFunction(
-        geometry, [](const RTCBoundsFunctionArguments* a) { bounds_callback<Primitive>(a); },
-        nullptr);
-    rtcSetGeometryIntersectFunction(geometry, intersect_callback<Primitive>);
-    rtcSetGeometryOccludedFunction(geometry, occluded_callback<Primitive>);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned int>(sources.size() - 1));
-    rtcReleaseGeometry(geometry);
-}
-
-void Geometry::Implementation::attach(const OwnedMesh& owned) {
-    sources.push_back(&owned);
-    const std::size_t vertices = owned.mesh.positions.size() / 3;
-    const std::size_t count = owned.mesh.indices.size() / 3;
-    triangles += count;
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    // Embree reads 16 bytes at the last vertex, so it keeps its own padded copies.
-    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                              RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices);
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            3 * sizeof(std::uint32_t), count);
-    check("take memory for a mesh");
-    std::copy(owned.mesh.positions.begin(), owned.mesh.positions.end(),
-              static_cast<float*>(positions));
-    std::copy(owned.mesh.indices.begin(), owned.mesh.indices.end(),
-              static_cast<std::uint32_t*>(indices));
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned int>(sources.size() - 1));
-    rtcReleaseGeometry(geometry);
-}
+    : surfaces(surfaces_of(scene_in)), opacity(scene_in),
+      parameters(wants_parameters || !opacity.is_empty()), embree(surfaces) {}
 
 template <typename Primitive>
 HitRecord Geometry::Implementation::describe(const OwnedPrimitives<Primitive>& owned,
@@ -238,19 +160,18 @@ HitRecord Geometry::Implementation::describe(const RayRecord& record, const RTCR
                                              std::size_t k, double distance) const {
     const unsigned int index = found.hit.primID[k];
     const Ray ray = ray_of(record);
-    const void* source = sources[found.hit.geomID[k]];
+    const void* source = embree.source(found.hit.geomID[k], found.hit.instID[0][k]);
     if (source == &surfaces.spheres)
         return describe(surfaces.spheres, index, ray, distance);
     if (source == &surfaces.rectangles)
         return describe(surfaces.rectangles, index, ray, distance);
     if (source == &surfaces.disks)
         return describe(surfaces.disks, index, ray, distance);
+    if (source == &surfaces.cylinders)
+        return describe(surfaces.cylinders, index, ray, distance);
     const auto& owned = *static_cast<const OwnedMesh*>(source);
-    const TrianglePrimitive triangle = triangle_of(owned.mesh, index);
-    const auto barycentric = triangle.barycentric(ray, {found.hit.u[k], found.hit.v[k]});
-    SurfaceHit hit = triangle.describe(ray, barycentric);
-    interpolate_vertex_data(owned.mesh, index, barycentric, hit);
-    return record_of(hit, owned.owner);
+    return record_of(describe_on_mesh(owned, index, ray, {found.hit.u[k], found.hit.v[k]}),
+                     owned.owner);
 }
 
 void Geometry::Implementation::hit(const RaysToHit& rays, std::size_t begin,
@@ -270,16 +191,43 @@ void Geometry::Implementation::hit(const RaysToHit& rays, std::size_t begin,
 void Geometry::Implementation::hit(const RaysToHit& rays, Packet<RTCRayHit16>& packet) const {
     RTCRayHit16& found = packet.rays();
     std::fill_n(found.hit.geomID, packet_rays, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(found.hit.instID[0], packet_rays, RTC_INVALID_GEOMETRY_ID);
     std::array<double, packet_rays> distances{}; // of shapes that are no meshes
-    embree_intersect(scene, packet.valid(), found, rays.coherent, distances.data());
+    embree_intersect(embree.scene(), packet.valid(), found, rays.coherent, distances.data());
     for (int i = 0; i < packet.count(); ++i) {
         const auto k = static_cast<std::size_t>(i);
         const std::uint32_t place = packet.place(i);
         rays.hits[place] = found.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
                                ? no_hit()
                                : describe(rays.rays[place], found, k, distances[k]);
+        if (!opacity.is_empty())
+            rays.hits[place] = behind_openings(rays.rays[place], rays.hits[place]);
     }
     packet.clear();
+}
+
+/// Returns the nearest hit of one ray, whatever its opacity.
+HitRecord Geometry::Implementation::nearest(const RayRecord& ray) const {
+    Packet<RTCRayHit16> packet;
+    packet.add(ray, 0);
+    RTCRayHit16& found = packet.rays();
+    found.hit.geomID[0] = found.hit.instID[0][0] = RTC_INVALID_GEOMETRY_ID;
+    std::array<double, packet_rays> distances{};
+    embree_intersect(embree.scene(), packet.valid(), found, false, distances.data());
+    return found.hit.geomID[0] == RTC_INVALID_GEOMETRY_ID ? no_hit()
+                                                          : describe(ray, found, 0, distances[0]);
+}
+
+/// Returns the first hit of a ray, from its nearest one on, that its surface does not let through.
+HitRecord Geometry::Implementation::behind_openings(RayRecord ray, HitRecord found) const {
+    float passed = 0.0f;
+    while (!opacity.stops(ray, found)) {
+        passed += found.distance;
+        go_on_behind(found, cosine_of(ray, found), ray);
+        found = ray.t_far >= 0.0f ? nearest(ray) : no_hit();
+    }
+    found.distance += passed;
+    return found;
 }
 
 std::uint64_t Geometry::Implementation::block(const RaysToBlock& rays, std::size_t begin,
@@ -301,22 +249,26 @@ std::uint64_t Geometry::Implementation::block(const RaysToBlock& rays, std::size
 }
 
 void Geometry::Implementation::block(const RaysToBlock& rays, Packet<RTCRay16>& packet) const {
-    embree_occluded(scene, packet.valid(), packet.rays());
+    embree_occluded(embree.scene(), packet.valid(), packet.rays());
     for (int i = 0; i < packet.count(); ++i) {
         const std::uint32_t place = packet.place(i);
         const bool is_met = packet.rays().tfar[static_cast<std::size_t>(i)] < 0.0f;
-        if (rays.sheets.materials.empty() ? is_met : !passes_sheets(rays, place, is_met))
+        const bool may_pass = !rays.sheets.materials.empty() || !opacity.is_empty();
+        if (may_pass ? !goes_through(rays, place, is_met) : is_met)
             rays.rays[place].t_far = -1.0f;
     }
     packet.clear();
 }
 
-/// Follows a ray that meets something as far as that are smooth sheets, and notes them. Returns
-/// false where it is blocked.
-bool Geometry::Implementation::passes_sheets(const RaysToBlock& rays, std::uint32_t place,
-                                             bool is_met) const {
+/// Follows a ray that meets something as far as that lets it through or are smooth sheets, and
+/// notes these. Returns false where it is blocked.
+bool Geometry::Implementation::goes_through(const RaysToBlock& rays, std::uint32_t place,
+                                            bool is_met) const {
+    const bool has_sheets = !rays.sheets.materials.empty();
     const auto crossings =
-        rays.sheets.crossings.subspan(std::size_t{place} * MOST_CROSSINGS, MOST_CROSSINGS);
+        has_sheets
+            ? rays.sheets.crossings.subspan(std::size_t{place} * MOST_CROSSINGS, MOST_CROSSINGS)
+            : std::span<SheetCrossing>();
     std::ranges::fill(crossings, SheetCrossing{NO_INDEX, 0.0f});
     RayRecord ray = rays.rays[place];
     const std::uint32_t only = 0;
@@ -327,12 +279,12 @@ bool Geometry::Implementation::passes_sheets(const RaysToBlock& rays, std::uint3
             return true;
         if (found.distance >= ray.t_far)
             return true;
-        const std::uint32_t sheet =
-            found.light == NO_INDEX ? rays.sheets.materials[found.material] : NO_INDEX;
+        const std::uint32_t sheet = has_sheets && found.light == NO_INDEX
+                                        ? rays.sheets.materials[found.material]
+                                        : NO_INDEX;
         if (sheet == NO_INDEX || passed >= rays.sheets.most)
             return false;
-        const float cosine = found.normal_x * ray.direction_x + found.normal_y * ray.direction_y +
-                             found.normal_z * ray.direction_z;
+        const float cosine = cosine_of(ray, found);
         crossings[passed] = {sheet, std::fabs(cosine)};
         go_on_behind(found, cosine, ray);
     }
@@ -374,15 +326,15 @@ TraceStatistics Geometry::trace(const RaysToHit& rays, const RaysToBlock& shadow
 }
 
 std::size_t Geometry::triangle_count() const {
-    return implementation_->triangles;
+    return implementation_->embree.triangles();
 }
 
 std::size_t Geometry::memory_bytes() const {
-    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(implementation_->bytes, 0));
+    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(implementation_->embree.bytes(), 0));
 }
 
 const char* Geometry::library_version() const {
-    return implementation_->version.c_str();
+    return implementation_->embree.version().c_str();
 }
 
 } // namespace reradiant

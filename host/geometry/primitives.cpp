@@ -50,23 +50,28 @@ SurfaceHit flat_hit(const Vec3& position, const Vec3& normal, double u, double v
     return {position, normal, normal, u, v, t, rounding_error(position)};
 }
 
+/// Where a ray comes as near as `radius` to the origin and where it leaves, NaN where it does not.
+/// `direction` may be zero. The discriminant comes from the ray's closest approach, and c as a
+/// product: neither cancels for a ray far from a small circle or near a huge one.
+std::array<double, 2> circle_crossings(const Vec3& origin, const Vec3& direction, double radius) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const double a = vec3_dot(direction, direction), b = vec3_dot(origin, direction);
+    const Vec3 closest = vec3_sub(origin, vec3_scale(direction, b / a));
+    const double discriminant = a * (square(radius) - vec3_dot(closest, closest));
+    if (!(discriminant >= 0.0))
+        return {none, none};
+    const double distance = std::sqrt(vec3_dot(origin, origin));
+    const double c = (distance - radius) * (distance + radius);
+    const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+    const double first = q == 0.0 ? 0.0 : c / q, second = q / a;
+    return {std::min(first, second), std::max(first, second)};
+}
+
 } // namespace
 
 double SpherePrimitive::intersect(const Ray& ray) const {
     const Vec3 from_centre = vec3_sub(ray.origin, centre);
-    const double a = vec3_dot(ray.direction, ray.direction);
-    const double b = vec3_dot(from_centre, ray.direction);
-    // The discriminant from the ray's closest approach, and c as a product: neither cancels for
-    // a ray far from a small sphere or near the surface of a huge one.
-    const Vec3 closest = vec3_sub(from_centre, vec3_scale(ray.direction, b / a));
-    const double discriminant = a * (square(radius) - vec3_dot(closest, closest));
-    if (!(discriminant >= 0.0))
-        return -1.0;
-    const double distance = std::sqrt(vec3_dot(from_centre, from_centre));
-    const double c = (distance - radius) * (distance + radius);
-    const double q = -(b + std::copysign(std::sqrt(discriminant), b));
-    const double first = q == 0.0 ? 0.0 : c / q, second = q / a;
-    for (const double t : {std::min(first, second), std::max(first, second)})
+    for (const double t : circle_crossings(from_centre, ray.direction, radius))
         if (t > ray.t_near && t < ray.t_far)
             return t;
     return -1.0;
@@ -160,6 +165,51 @@ Box DiskPrimitive::bounds() const {
     return {vec3_sub(centre, r), vec3_add(centre, r)};
 }
 
+CylinderPrimitive::CylinderPrimitive(const Vector3& from_in, const Vector3& to_in, double radius_in)
+    : from(to_vec3(from_in)), radius(radius_in) {
+    const Vec3 along = vec3_sub(to_vec3(to_in), from);
+    axis = scaled_to_unit(along);
+    length = vec3_dot(along, axis);
+    tangent = any_perpendicular(axis);
+}
+
+double CylinderPrimitive::intersect(const Ray& ray) const {
+    const auto across = [&](const Vec3& v) {
+        return vec3_sub(v, vec3_scale(axis, vec3_dot(v, axis)));
+    };
+    const Vec3 from_end = vec3_sub(ray.origin, from);
+    const Vec3 origin = across(from_end), direction = across(ray.direction);
+    const double along = vec3_dot(from_end, axis), speed = vec3_dot(ray.direction, axis);
+    for (const double t : circle_crossings(origin, direction, radius))
+        if (t > ray.t_near && t < ray.t_far && along + t * speed >= 0.0 &&
+            along + t * speed <= length)
+            return t;
+    return -1.0;
+}
+
+SurfaceHit CylinderPrimitive::describe(const Ray& ray, double t) const {
+    const Vec3 p = vec3_sub(ray.at(t), from);
+    const double along = vec3_dot(p, axis);
+    const Vec3 normal = vec3_normalise(vec3_sub(p, vec3_scale(axis, along)));
+    const Vec3 foot = vec3_add(from, vec3_scale(axis, std::clamp(along, 0.0, length)));
+    return flat_hit(vec3_add(foot, vec3_scale(normal, radius)), normal, 0.0, 0.0, t);
+}
+
+void CylinderPrimitive::set_parameters(SurfaceHit& hit) const {
+    const Vec3 p = vec3_sub(hit.position, from);
+    hit.u = azimuth_share(vec3_dot(p, vec3_cross(axis, tangent)), vec3_dot(p, tangent));
+    hit.v = std::clamp(vec3_dot(p, axis) / length, 0.0, 1.0);
+}
+
+Box CylinderPrimitive::bounds() const {
+    const auto reach = [&](double a) { return radius * std::sqrt(std::max(0.0, 1.0 - a * a)); };
+    const Vec3 r = vec3(reach(axis.x), reach(axis.y), reach(axis.z));
+    const Vec3 to = vec3_add(from, vec3_scale(axis, length));
+    const Vec3 low = vec3(std::min(from.x, to.x), std::min(from.y, to.y), std::min(from.z, to.z));
+    const Vec3 high = vec3(std::max(from.x, to.x), std::max(from.y, to.y), std::max(from.z, to.z));
+    return {vec3_sub(low, r), vec3_add(high, r)};
+}
+
 std::array<double, 2> TrianglePrimitive::barycentric(const Ray& ray,
                                                      std::array<double, 2> fallback) const {
     const Vec3 e1 = vec3_sub(corners[1], corners[0]), e2 = vec3_sub(corners[2], corners[0]);
@@ -205,7 +255,8 @@ TrianglePrimitive triangle_of(const MeshShape& mesh, std::uint32_t triangle) {
 }
 
 void interpolate_vertex_data(const MeshShape& mesh, std::uint32_t triangle,
-                             std::array<double, 2> barycentric, SurfaceHit& hit) {
+                             std::array<double, 2> barycentric, const Placement* placement,
+                             SurfaceHit& hit) {
     const std::array<double, 3> weights{1.0 - barycentric[0] - barycentric[1], barycentric[0],
                                         barycentric[1]};
     const auto sum = [&](const std::vector<float>& values, std::size_t width, std::size_t axis) {
@@ -222,8 +273,9 @@ void interpolate_vertex_data(const MeshShape& mesh, std::uint32_t triangle,
     }
     if (mesh.normals.empty())
         return;
-    const Vec3 shading =
+    const Vec3 own =
         vec3(sum(mesh.normals, 3, 0), sum(mesh.normals, 3, 1), sum(mesh.normals, 3, 2));
+    const Vec3 shading = placement != nullptr ? placement->normal(own) : own;
     if (!(largest_component(shading) > 1e-12))
         return;
     hit.shading = scaled_to_unit(shading);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "host/scene/meshes/placement.h"
 #include "kernels/core/portable.h"
 #include "reradiant/scene.h"
 
@@ -77,6 +78,20 @@ struct DiskPrimitive {
     double radius;
 };
 
+/// An open tube, from both sides; the normal points away from its axis. u = azimuth over 2 pi, v =
+/// distance along the axis over the length.
+struct CylinderPrimitive {
+    CylinderPrimitive(const Vector3& from, const Vector3& to, double radius);
+
+    double intersect(const Ray& ray) const;
+    SurfaceHit describe(const Ray& ray, double t) const;
+    void set_parameters(SurfaceHit& hit) const;
+    Box bounds() const;
+
+    Vec3 from, axis, tangent; ///< axis and tangent: unit
+    double length, radius;
+};
+
 /// One triangle of a mesh that Embree found.
 struct TrianglePrimitive {
     std::array<Vec3, 3> corners;
@@ -88,8 +103,10 @@ struct TrianglePrimitive {
 };
 
 TrianglePrimitive triangle_of(const MeshShape& mesh, std::uint32_t triangle);
-/// Replaces shading normal and parameters of a hit by those that the mesh gives its vertices.
+/// Replaces shading normal and parameters of a hit by those that the mesh gives its vertices;
+/// `placement` moves an instance's normals, null: there is none.
 void interpolate_vertex_data(const MeshShape& mesh, std::uint32_t triangle,
-                             std::array<double, 2> barycentric, SurfaceHit& hit);
+                             std::array<double, 2> barycentric, const Placement* placement,
+                             SurfaceHit& hit);
 
 } // namespace reradiant

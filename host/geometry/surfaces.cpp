@@ -1,6 +1,10 @@
 #include "host/geometry/surfaces.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
+#include <stdexcept>
 
 #include <fmt/core.h>
 
@@ -22,15 +26,27 @@ private:
     }
     void check_vector(const Vector3& v, const char* what) const;
     void check_radius(double radius) const;
+    void check_mesh(const MeshShape& mesh) const;
     void add(const SphereShape& sphere);
     void add(const RectangleShape& rectangle);
     void add(const DiskShape& disk);
     void add(const MeshShape& mesh);
+    void add(const CylinderShape& cylinder);
+    void add(const MeshInstance& instance);
+    void add(const RectangleLight& light) {
+        add(RectangleShape{light.centre, light.edge_u, light.edge_v});
+    }
+    void add(const SphereLight& light) { add(SphereShape{light.centre, light.radius}); }
+    void add(const DiskLight& light) { add(DiskShape{light.centre, light.normal, light.radius}); }
+    void add(const MeshLight& light) { add(light.mesh); }
+    template <typename Light>
+    void add(const Light&) {} // has no surface
 
     const Scene& scene_;
     Surfaces surfaces_;
     std::string name_;
     Owner owner_;
+    std::set<const MeshShape*> checked_; ///< that instances share
 };
 
 void SurfaceCollector::check_vector(const Vector3& v, const char* what) const {
@@ -71,7 +87,42 @@ void SurfaceCollector::add(const DiskShape& disk) {
     surfaces_.disks.add(DiskPrimitive(disk.centre, disk.normal, disk.radius), owner_);
 }
 
+void SurfaceCollector::add(const CylinderShape& cylinder) {
+    check_vector(cylinder.from, "from");
+    check_vector(cylinder.to, "to");
+    check_radius(cylinder.radius);
+    const CylinderPrimitive primitive(cylinder.from, cylinder.to, cylinder.radius);
+    if (!(primitive.length > 0.0))
+        fail("both ends of the cylinder are the same", "give two ends that lie apart");
+    surfaces_.cylinders.add(primitive, owner_);
+}
+
 void SurfaceCollector::add(const MeshShape& mesh) {
+    check_mesh(mesh);
+    surfaces_.meshes.push_back({std::make_shared<const MeshShape>(mesh), owner_, {}});
+}
+
+void SurfaceCollector::add(const MeshInstance& instance) {
+    if (instance.mesh == nullptr)
+        fail("the instance has no mesh", "give one");
+    if (checked_.insert(instance.mesh.get()).second)
+        check_mesh(*instance.mesh);
+    for (const double number : instance.transform)
+        if (!(std::fabs(number) <= MAX_COORDINATE))
+            fail(fmt::format("the transform holds {}", number),
+                 "its numbers must be finite and at most 1e18 in size");
+    // Embree holds the matrix in single precision, and so does the description of a hit.
+    std::array<double, 12> rounded{};
+    std::transform(instance.transform.begin(), instance.transform.end(), rounded.begin(),
+                   [](double number) { return static_cast<float>(number); });
+    try {
+        surfaces_.meshes.push_back({instance.mesh, owner_, Placement(rounded)});
+    } catch (const std::invalid_argument& error) {
+        fail(error.what(), "scale every axis by other than 0");
+    }
+}
+
+void SurfaceCollector::check_mesh(const MeshShape& mesh) const {
     const std::size_t vertices = mesh.positions.size() / 3;
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
         if (!(std::fabs(static_cast<double>(mesh.positions[i])) <= MAX_COORDINATE))
@@ -87,7 +138,6 @@ void SurfaceCollector::add(const MeshShape& mesh) {
     if ((!mesh.normals.empty() && mesh.normals.size() != 3 * vertices) ||
         (!mesh.texture_coordinates.empty() && mesh.texture_coordinates.size() != 2 * vertices))
         fail("normals or texture coordinates are not one a vertex", "give none or all");
-    surfaces_.meshes.push_back({mesh, owner_});
 }
 
 Surfaces SurfaceCollector::collect() {
@@ -101,15 +151,27 @@ Surfaces SurfaceCollector::collect() {
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         name_ = fmt::format("light {}", i);
         owner_ = {NO_INDEX, NO_INDEX, static_cast<std::uint32_t>(i)};
-        if (const auto* rectangle = std::get_if<RectangleLight>(&scene_.lights[i]))
-            add(RectangleShape{rectangle->centre, rectangle->edge_u, rectangle->edge_v});
-        else if (const auto* sphere = std::get_if<SphereLight>(&scene_.lights[i]))
-            add(SphereShape{sphere->centre, sphere->radius});
+        std::visit([&](const auto& light) { add(light); }, scene_.lights[i]);
     }
     return std::move(surfaces_);
 }
 
 } // namespace
+
+SurfaceHit describe_on_mesh(const OwnedMesh& owned, std::uint32_t index, const Ray& ray,
+                            std::array<double, 2> fallback) {
+    TrianglePrimitive triangle = triangle_of(*owned.mesh, index);
+    if (owned.placement)
+        for (Vec3& corner : triangle.corners)
+            corner = owned.placement->point(corner);
+    const auto barycentric = triangle.barycentric(ray, fallback);
+    SurfaceHit hit = triangle.describe(ray, barycentric);
+    interpolate_vertex_data(*owned.mesh, index, barycentric,
+                            owned.placement ? &*owned.placement : nullptr, hit);
+    if (owned.placement)
+        hit.position_error += owned.placement->rounding_at(hit.position);
+    return hit;
+}
 
 Surfaces surfaces_of(const Scene& scene) {
     return SurfaceCollector(scene).collect();

@@ -4,6 +4,8 @@
 #include "kernels/core/shared.h"
 #include "reradiant/scene.h"
 
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace reradiant {
@@ -25,17 +27,24 @@ struct OwnedPrimitives {
     }
 };
 
-/// A mesh of the scene, copied so that a Geometry outlives its Scene.
+/// A mesh of the scene. Its own are copied, so that a Geometry outlives its Scene; instances share
+/// theirs and are moved.
 struct OwnedMesh {
-    MeshShape mesh;
+    std::shared_ptr<const MeshShape> mesh;
     Owner owner;
+    std::optional<Placement> placement;
 };
+
+/// Where a ray meets a triangle of a mesh; `fallback` as for TrianglePrimitive::barycentric.
+SurfaceHit describe_on_mesh(const OwnedMesh& owned, std::uint32_t index, const Ray& ray,
+                            std::array<double, 2> fallback);
 
 /// Every surface of a scene, checked.
 struct Surfaces {
     OwnedPrimitives<SpherePrimitive> spheres;
     OwnedPrimitives<RectanglePrimitive> rectangles;
     OwnedPrimitives<DiskPrimitive> disks;
+    OwnedPrimitives<CylinderPrimitive> cylinders;
     std::vector<OwnedMesh> meshes;
 };
 

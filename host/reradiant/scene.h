@@ -39,6 +39,34 @@ struct IntegratorSettings {
     int min_depth = 3; ///< before Russian roulette
 };
 
+struct SphereShape {
+    Vector3 centre{};
+    double radius = 1.0;
+};
+struct RectangleShape {
+    Vector3 centre{}, edge_u{}, edge_v{};
+};
+struct DiskShape {
+    Vector3 centre{}, normal{};
+    double radius = 1.0;
+};
+/// Triangles; positions xyz xyz ..., 3 indices a triangle, normals empty or one a vertex.
+struct MeshShape {
+    std::vector<float> positions, normals, texture_coordinates;
+    std::vector<std::uint32_t> indices;
+    std::filesystem::path file;
+};
+/// An open tube from one end to the other; disks close it.
+struct CylinderShape {
+    Vector3 from{}, to{};
+    double radius = 1.0;
+};
+/// A mesh that other shapes may hold, too, moved by the upper three rows of a matrix.
+struct MeshInstance {
+    std::shared_ptr<const MeshShape> mesh;
+    std::array<double, 12> transform{};
+};
+
 /// Emits radiance on the side of cross(edge_u, edge_v).
 struct RectangleLight {
     Vector3 centre{}, edge_u{}, edge_v{};
@@ -49,15 +77,37 @@ struct SphereLight {
     double radius = 1.0;
     Spectrum radiance;
 };
+/// Emits radiance on the side of its normal.
+struct DiskLight {
+    Vector3 centre{}, normal{};
+    double radius = 1.0;
+    Spectrum radiance;
+};
+/// Every triangle emits radiance on the side of cross(second - first corner, third - first).
+struct MeshLight {
+    MeshShape mesh;
+    Spectrum radiance;
+};
 /// intensity in W/sr per nm
 struct PointLight {
     Vector3 position{};
     Spectrum intensity;
 };
-/// Light travels along `direction`; irradiance on a plane facing it, W/m^2 per nm.
+/// A point light within cone_deg of its axis: its intensity holds up to cone_deg - falloff_deg, and
+/// falls from there to 0 by s^2 (3 - 2 s), s linear in the cosine (as in pbrt-v4's SpotLight).
+struct SpotLight {
+    Vector3 position{}, direction{};
+    double cone_deg = 30.0; ///< half angle, up to 180
+    double falloff_deg = 5.0;
+    Spectrum intensity;
+};
+/// Light travels along `direction`; irradiance on a plane facing it, W/m^2 per nm. It comes from
+/// all directions of a cone of full angle angle_deg alike, below 180 degrees; what else is far away
+/// does not shine through that disk. 0: from one direction.
 struct DirectionalLight {
     Vector3 direction{};
     Spectrum irradiance;
+    double angle_deg = 0.0;
 };
 /// Constant, or with an image: radiance times the texel's colour, rgb made into a spectrum of
 /// radiance (see rgb_emission in reradiant/colour.h). Latitude-longitude: the top row
@@ -67,9 +117,12 @@ struct EnvironmentLight {
     Spectrum radiance;
     int image = -1; ///< index into Scene::images
     double rotation_deg = 0.0;
+    /// What red, green and blue of the image stand for, times `radiance`; empty: the basis of
+    /// rgb_emission.
+    std::vector<Spectrum> primaries = {};
 };
-using Light =
-    std::variant<RectangleLight, SphereLight, PointLight, DirectionalLight, EnvironmentLight>;
+using Light = std::variant<RectangleLight, SphereLight, PointLight, DirectionalLight,
+                           EnvironmentLight, SpotLight, DiskLight, MeshLight>;
 
 /// The emission spectrum of any light (radiance, intensity or irradiance).
 const Spectrum& light_spectrum(const Light& light);
@@ -140,9 +193,15 @@ struct Surface {
     int first_material = 0;    ///< into Scene::materials; the last texture runs fastest
     std::vector<int> textures; ///< into Scene::textures, at most 3; levels are theirs
     int normal_texture = -1;   ///< perturbs the shading normal
-    int mixed_with = -1;       ///< another surface (itself not a mixture), or none
+    int mixed_with = -1;       ///< another surface, or none; mixtures may not go round in circles
     double mix_weight = 0.0;   ///< share of `mixed_with`
     int mix_texture = -1;      ///< its t replaces mix_weight
+    /// Share of rays that the surface stops; the others go on as if it were not there. With a
+    /// texture: the shares at its t = 0 and t = 1.
+    std::array<double, 2> opacity{1.0, 1.0};
+    int opacity_texture = -1;
+
+    bool is_opaque() const { return opacity[0] >= 1.0 && opacity[1] >= 1.0; }
 };
 
 struct Material {
@@ -155,25 +214,9 @@ struct Material {
     bool is_fluorescent() const { return substrate.is_fluorescent() || stack.is_dyed(); }
 };
 
-struct SphereShape {
-    Vector3 centre{};
-    double radius = 1.0;
-};
-struct RectangleShape {
-    Vector3 centre{}, edge_u{}, edge_v{};
-};
-struct DiskShape {
-    Vector3 centre{}, normal{};
-    double radius = 1.0;
-};
-/// Triangles; positions xyz xyz ..., 3 indices a triangle, normals empty or one a vertex.
-struct MeshShape {
-    std::vector<float> positions, normals, texture_coordinates;
-    std::vector<std::uint32_t> indices;
-    std::filesystem::path file;
-};
 struct Shape {
-    std::variant<SphereShape, RectangleShape, DiskShape, MeshShape> geometry;
+    std::variant<SphereShape, RectangleShape, DiskShape, MeshShape, CylinderShape, MeshInstance>
+        geometry;
     int material = 0; ///< index into Scene::surfaces
 };
 

@@ -28,6 +28,8 @@
 #define CHECK_LAYERS 3
 #define CHECK_TEXTURES 4
 #define CHECK_LIGHTS 4
+/// A disk, a mesh of two triangles, a spot, a distant light.
+#define CHECK_LAMPS 4
 #define CHECK_RANK 2
 #define CHECK_IMAGE_WIDTH 16
 #define CHECK_IMAGE_HEIGHT 8
@@ -43,6 +45,8 @@ typedef struct {
     LobeRecord lobes[LOBES];
     TextureRecord textures[CHECK_TEXTURES];
     LightRecord lights[CHECK_LIGHTS];
+    LightRecord lamps[CHECK_LAMPS]; ///< offsets into `triangles`
+    shared_float triangles[2 * 10];
     CameraRecord camera;
     EnvironmentRecord environment; ///< offsets into `image`
     shared_float choice[TABLE_NODES * CHECK_CHOICES];

@@ -116,9 +116,9 @@ FEATURE_BIT(walk, "no material uses the model walk")
 #define FEATURE_WALK 1
 #endif
 
-/// Rectangle or sphere lights.
+/// Lights with a surface.
 #ifdef FEATURE_BIT
-FEATURE_BIT(area_lights, "no rectangle or sphere light")
+FEATURE_BIT(area_lights, "no light has a surface")
 #elif !defined(FEATURE_AREA_LIGHTS)
 #define FEATURE_AREA_LIGHTS 1
 #endif
@@ -130,9 +130,30 @@ FEATURE_BIT(delta_lights, "no point or directional light")
 #define FEATURE_DELTA_LIGHTS 1
 #endif
 
+/// Disk or mesh lights (needs FEATURE_AREA_LIGHTS).
+#ifdef FEATURE_BIT
+FEATURE_BIT(shaped_lights, "no disk or mesh light")
+#elif !defined(FEATURE_SHAPED_LIGHTS)
+#define FEATURE_SHAPED_LIGHTS 1
+#endif
+
+/// Spot lights.
+#ifdef FEATURE_BIT
+FEATURE_BIT(spot_lights, "no spot light")
+#elif !defined(FEATURE_SPOT_LIGHTS)
+#define FEATURE_SPOT_LIGHTS 1
+#endif
+
+/// Directional lights that fill a cone of directions, such as the sun.
+#ifdef FEATURE_BIT
+FEATURE_BIT(distant_lights, "no sun, and no other directional light with an angle")
+#elif !defined(FEATURE_DISTANT_LIGHTS)
+#define FEATURE_DISTANT_LIGHTS 1
+#endif
+
 /// A constant environment.
 #ifdef FEATURE_BIT
-FEATURE_BIT(environment, "no environment light")
+FEATURE_BIT(environment, "no environment light of one radiance all around")
 #elif !defined(FEATURE_ENVIRONMENT)
 #define FEATURE_ENVIRONMENT 1
 #endif
@@ -149,6 +170,13 @@ FEATURE_BIT(environment_image, "no environment is an image")
 FEATURE_BIT(textures, "no material has textures or is a mixture")
 #elif !defined(FEATURE_TEXTURES)
 #define FEATURE_TEXTURES 1
+#endif
+
+/// Some mixture's other material is a mixture (needs FEATURE_TEXTURES).
+#ifdef FEATURE_BIT
+FEATURE_BIT(nested_mixtures, "no mixture is mixed into another")
+#elif !defined(FEATURE_NESTED_MIXTURES)
+#define FEATURE_NESTED_MIXTURES 1
 #endif
 
 /// Some substrate's reflectance is coloured by an image.

@@ -44,9 +44,11 @@
 #endif
 
 #define FEATURE_LIGHT_SAMPLING                                                                     \
-    (FEATURE_AREA_LIGHTS || FEATURE_DELTA_LIGHTS || FEATURE_ENVIRONMENT_IMAGE)
+    (FEATURE_AREA_LIGHTS || FEATURE_DELTA_LIGHTS || FEATURE_SPOT_LIGHTS ||                         \
+     FEATURE_DISTANT_LIGHTS || FEATURE_ENVIRONMENT_IMAGE)
 /// Some lights are both looked for and met by chance.
-#define FEATURE_LIGHTS_MET (FEATURE_AREA_LIGHTS || FEATURE_ENVIRONMENT_IMAGE)
+#define FEATURE_LIGHTS_MET                                                                         \
+    (FEATURE_AREA_LIGHTS || FEATURE_DISTANT_LIGHTS || FEATURE_ENVIRONMENT_IMAGE)
 /// Vertices keep colours that images gave.
 #define FEATURE_COLOURS (FEATURE_ENVIRONMENT_IMAGE || FEATURE_REFLECTANCE_IMAGE)
 /// Model A's interfaces act lane by lane.

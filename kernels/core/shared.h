@@ -56,6 +56,10 @@ ASSERT_SIZE(HitRecord, 64);
 #define LIGHT_POINT 2
 #define LIGHT_DIRECTIONAL 3
 #define LIGHT_ENVIRONMENT 4
+#define LIGHT_SPOT 5
+#define LIGHT_DISK 6
+#define LIGHT_MESH 7
+#define LIGHT_DISTANT 8
 
 typedef struct {
     shared_uint type;
@@ -63,13 +67,19 @@ typedef struct {
     shared_float selection;      ///< probability of light sampling; 0: never sampled
     shared_float cumulative;     ///< sum of `selection` up to and with this light
     shared_float px, py, pz;     ///< centre, position
-    shared_float radius_or_area; ///< sphere: radius; rectangle: area
-    shared_float ux, uy, uz;     ///< rectangle: full edge u
-    shared_float vx, vy, vz;     ///< rectangle: full edge v
-    shared_float nx, ny, nz;     ///< rectangle: unit normal; directional: way of travel
-    shared_float padding;
+    shared_float radius_or_area; ///< sphere: radius; rectangle, disk, mesh: area
+    shared_float ux, uy, uz;     ///< rectangle: full edge u; disk: a radius
+    shared_float vx, vy, vz;     ///< rectangle: full edge v; disk: a radius across u
+    shared_float nx, ny, nz;     ///< rectangle, disk: unit normal; spot: axis; directional and
+                                 ///< distant: way of travel
+    shared_float cone;           ///< distant: 1 - cos of the half angle; spot: likewise where it
+                                 ///< goes dark
+    shared_float full_cone;      ///< spot: where it begins to fall
+    shared_uint triangles;       ///< mesh: offset in the tables: a cumulative share of the area for
+                                 ///< each, then the corners of each, 9 numbers
+    shared_uint triangle_count;
 } LightRecord;
-ASSERT_SIZE(LightRecord, 72);
+ASSERT_SIZE(LightRecord, 84);
 
 /// An environment that is an image: offsets into the tables. light = NO_INDEX: there is none.
 typedef struct {

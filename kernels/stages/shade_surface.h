@@ -83,18 +83,39 @@ Vec3 tilted_normal(Vec3 normal, real slope_x, real slope_y) {
         vec3_add(normal, vec3_add(vec3_scale(tangent, slope_x), vec3_scale(bitangent, slope_y))));
 }
 
+/// The share of the other surface in a mixture, here.
+real mixture_weight(const ShadeScene* scene, SurfaceRecord surface, HitRecord hit) {
+    return surface.mix_texture == NO_INDEX ? surface.mix_weight
+                                           : texture_here(scene, surface.mix_texture, hit).value;
+}
+
+#if FEATURE_NESTED_MIXTURES
+/// One of the surfaces that mixtures of mixtures hold, picked by a uniform number, of which what is
+/// left picks again.
+SurfaceRecord choose_nested_surface(const ShadeScene* scene, SurfaceRecord surface, HitRecord hit,
+                                    real u) {
+    while (surface.mixed_with != NO_INDEX) {
+        const real weight = mixture_weight(scene, surface, hit);
+        if (!(u < weight))
+            return surface;
+        u /= weight;
+        surface = scene->surfaces[surface.mixed_with];
+    }
+    return surface;
+}
+#endif
+
 /// The material of a surface at a point, one level of each texture picked by u.a, u.b, u.c, a
 /// mixture's side by u.d; *normal is tilted where the surface says so.
 uint choose_material(const ShadeScene* scene, HitRecord hit, Random4 u, Vec3 to_camera,
                      Vec3* normal) {
     SurfaceRecord surface = scene->surfaces[hit.material];
-    if (surface.mixed_with != NO_INDEX) {
-        const real weight = surface.mix_texture == NO_INDEX
-                                ? surface.mix_weight
-                                : texture_here(scene, surface.mix_texture, hit).value;
-        if (u.d < weight)
-            surface = scene->surfaces[surface.mixed_with];
-    }
+#if FEATURE_NESTED_MIXTURES
+    surface = choose_nested_surface(scene, surface, hit, u.d);
+#else
+    if (surface.mixed_with != NO_INDEX && u.d < mixture_weight(scene, surface, hit))
+        surface = scene->surfaces[surface.mixed_with];
+#endif
     const real random[MAX_TEXTURES] = {u.a, u.b, u.c};
     uint variant = 0u;
     for (uint i = 0u; i < surface.texture_count; ++i) {

@@ -24,6 +24,17 @@ void check_shape(const MeshShape& mesh) {
     check_mesh(mesh);
 }
 
+void check_shape(const CylinderShape& cylinder) {
+    require_all_finite(cylinder.from, "end of a cylinder");
+    require_all_finite(cylinder.to, "end of a cylinder");
+    require_finite(cylinder.radius, "radius of a cylinder");
+}
+void check_shape(const MeshInstance& instance) {
+    check_mesh(*instance.mesh);
+    for (const double number : instance.transform)
+        require_finite(number, "transform");
+}
+
 void check_conductor(const Conductor& conductor) {
     check_spectrum(conductor.ior);
     check_spectrum(conductor.kappa);
@@ -85,8 +96,13 @@ void check_scene(const Scene& scene) {
         require_finite(value, "camera");
     if (scene.film.width < 1 || scene.film.height < 1)
         fail("a film without pixels");
-    for (const Light& light : scene.lights)
+    for (const Light& light : scene.lights) {
         check_spectrum(light_spectrum(light));
+        if (const auto* rectangle = std::get_if<RectangleLight>(&light))
+            check_shape(RectangleShape{rectangle->centre, rectangle->edge_u, rectangle->edge_v});
+        if (const auto* mesh = std::get_if<MeshLight>(&light))
+            check_mesh(mesh->mesh);
+    }
     for (const Shape& shape : scene.shapes) {
         std::visit([](const auto& geometry) { check_shape(geometry); }, shape.geometry);
         if (shape.material < 0 || static_cast<std::size_t>(shape.material) >= scene.surfaces.size())

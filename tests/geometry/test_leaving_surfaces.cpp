@@ -88,6 +88,11 @@ TEST(LeavingSurfaces, Case03NoRayHitsTheSurfaceThatItLeaves) {
             self_hits(shape_of(RectangleShape{c, {2, 0.3, 0.1}, {0, 1.5, 1}}), c, COUNT, 1.0f), 0u)
             << offset;
         EXPECT_EQ(self_hits(shape_of(DiskShape{c, {1, 2, 3}, 1.2}), c, COUNT, 1.0f), 0u) << offset;
+        const CylinderShape tube{sum(c, {1, 0.5, -0.2}, -1.0), sum(c, {1, 0.5, -0.2}, 1.0), 0.7};
+        EXPECT_EQ(self_hits(shape_of(tube), c, COUNT, 1.0f), 0u) << offset;
+        const MeshInstance turned{std::make_shared<const MeshShape>(triangle_sphere({}, 1.0, 2)),
+                                  {0.8, -0.6, 0, c[0], 0.6, 0.8, 0, c[1], 0, 0, 0.9, c[2]}};
+        EXPECT_EQ(self_hits(shape_of(turned), c, COUNT, 1.0f), 0u) << offset;
     }
 }
 

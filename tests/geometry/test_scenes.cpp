@@ -64,8 +64,7 @@ Vector3 normal_of(const HitRecord& hit) {
     return {hit.normal_x, hit.normal_y, hit.normal_z};
 }
 
-Shape shape_of(std::variant<SphereShape, RectangleShape, DiskShape, MeshShape> geometry,
-               int material) {
+Shape shape_of(decltype(Shape::geometry) geometry, int material) {
     return {std::move(geometry), material};
 }
 

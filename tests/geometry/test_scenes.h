@@ -7,8 +7,7 @@
 
 namespace reradiant::testing {
 
-Shape shape_of(std::variant<SphereShape, RectangleShape, DiskShape, MeshShape> geometry,
-               int material = 0);
+Shape shape_of(decltype(Shape::geometry) geometry, int material = 0);
 
 /// A sphere of triangles: an icosahedron, each face split in four `levels` times.
 MeshShape triangle_sphere(const Vector3& centre, double radius, int levels);

@@ -1,4 +1,6 @@
+#include "kernels/scene/cone_lights.h"
 #include "kernels/scene/lights.h"
+#include "kernels/scene/shaped_lights.h"
 #include "tests/kernels/probe.h"
 
 #include <gtest/gtest.h>
@@ -60,6 +62,54 @@ TEST(KernelLights, SamplesMatchDouble) {
         EXPECT_NEAR(found[6 * i + 3], s.direction.x, 2e-6);
         EXPECT_NEAR(found[6 * i + 4], s.direction.y, 2e-6);
         EXPECT_NEAR(found[6 * i + 5], s.direction.z, 2e-6);
+    }
+}
+
+/// Two triangles of areas 1 and 3: the mean of a quarter of all points lies in the first, and
+/// within each the mean point is its centroid.
+TEST(KernelLights, MeshesAreSampledByArea) {
+    const std::vector<float> tables{0.25f, 1.0f, 0, 0, 0,  2, 0, 0,  0, 1,
+                                    0,     10,   0, 0, 12, 0, 0, 10, 3, 0};
+    LightRecord mesh{};
+    mesh.type = LIGHT_MESH;
+    mesh.triangle_count = 2;
+    constexpr int steps = 400;
+    double first = 0.0, x_first = 0.0, y_first = 0.0, y_second = 0.0;
+    for (int i = 0; i < steps; ++i)
+        for (int j = 0; j < steps; ++j) {
+            const kernels::LightPoint point = kernels::shaped_lights_mesh(
+                mesh, tables.data(), (i + 0.5) / steps, (j + 0.5) / steps);
+            EXPECT_EQ(point.normal.z, 1.0);
+            const bool in_first = point.position.x < 5.0;
+            first += in_first;
+            x_first += in_first ? point.position.x : 0.0;
+            (in_first ? y_first : y_second) += point.position.y;
+        }
+    EXPECT_EQ(first, 0.25 * steps * steps);
+    // Midpoints of a square root's integral: an error of some 1 / steps at most.
+    EXPECT_NEAR(x_first / first, 2.0 / 3.0, 5e-3);
+    EXPECT_NEAR(y_first / first, 1.0 / 3.0, 5e-3);
+    EXPECT_NEAR(y_second / (3.0 * first), 1.0, 5e-3);
+}
+
+TEST(KernelLights, DistantLightsHoldTheDirectionsThatTheySample) {
+    LightRecord sun{};
+    sun.ny = -0.6f;
+    sun.nz = 0.8f;
+    for (const float cone : {1.08e-5f, 0.3f}) {
+        sun.cone = cone;
+        for (const double u : {0.0, 0.5, 0.999})
+            for (const double v : {0.0, 0.3, 0.7}) {
+                const kernels::LightSample s = kernels::cone_lights_distant(sun, u, v);
+                EXPECT_TRUE(kernels::cone_lights_holds(sun, s.direction)) << u;
+                EXPECT_NEAR(s.weight * s.pdf, kernels::cone_lights_radiance(sun),
+                            1e-6 * kernels::cone_lights_radiance(sun));
+            }
+        const double sine = std::sqrt(1.01 * cone * (2.0 - 1.01 * cone));
+        const double cosine = 1.0 - 1.01 * cone;
+        EXPECT_FALSE(
+            kernels::cone_lights_holds(sun, kernels::vec3(sine, 0.6 * cosine, -0.8 * cosine)));
+        EXPECT_FALSE(kernels::cone_lights_holds(sun, kernels::vec3(0.0, -0.6, 0.8)));
     }
 }
 

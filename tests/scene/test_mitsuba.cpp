@@ -228,10 +228,12 @@ TEST_F(Mitsuba, WhatIsNotSupportedIsNamedWithItsPlace) {
     expect("<medium type=\"homogeneous\"/>", "<medium>", 6, 1);
     expect("<include filename=\"other.xml\"/>", "<include>", 6, 1);
     expect("<shape type=\"sphere\"><ref id=\"none\"/></shape>", "\"none\"", 6, 22);
-    expect("<emitter type=\"spot\"/>", "emitter \"spot\"", 6, 1);
+    expect("<emitter type=\"projector\"/>", "emitter \"projector\"", 6, 1);
     expect("<emitter type=\"envmap\"><string name=\"filename\" value=\"no.exr\"/></emitter>",
            "no.exr", 6, 24);
-    expect("<shape type=\"disk\"><emitter type=\"area\"/></shape>", "disk that emits", 6, 1);
+    expect("<shape type=\"sphere\"><boolean name=\"flip_normals\" value=\"true\"/>"
+           "<emitter type=\"area\"/></shape>",
+           "sphere that emits inwards", 6, 65);
     expect(
         "<shape type=\"sphere\"><transform name=\"to_world\"><scale x=\"2\"/></transform></shape>",
         "stretches", 6, 1);

@@ -77,6 +77,51 @@ TEST_F(SpectrumForms, AListIsASum) {
     EXPECT_EQ(s.lines().size(), 1u);
 }
 
+TEST_F(SpectrumForms, AProductIsALampBehindItsFilters) {
+    const Spectrum s = read("{ product = [{ illuminant = \"A\" }, { nm = [500, 600], value = [0, "
+                            "1] }, 0.5], scale = 4 }");
+    const Spectrum lamp = read("{ illuminant = \"A\" }");
+    // tables are linear between 1 nm: their product is off by an eighth of its curvature at most
+    EXPECT_NEAR(s(540.5), 4.0 * 0.5 * 0.405 * lamp(540.5), 1e-4);
+    EXPECT_EQ(s(480.0), 0.0);
+    // lines stay lines, as high as the filter lets them
+    const Spectrum line = read("{ product = [[{ line_nm = 550, width_nm = 2, scale = 3 }, 1], "
+                               "{ nm = [500, 600], value = [0, 1] }] }");
+    ASSERT_EQ(line.lines().size(), 1u);
+    EXPECT_NEAR(line.lines()[0].integral, 1.5, 1e-12);
+    EXPECT_NEAR(line(575.0), 0.75, 1e-12);
+    const Spectrum both = read("{ product = [{ line_nm = 550, width_nm = 4, scale = 8 }, "
+                               "{ line_nm = 551, width_nm = 4, scale = 4 }] }");
+    ASSERT_EQ(both.lines().size(), 1u);
+    EXPECT_NEAR(both.lines()[0].width_nm, 3.0, 1e-12);
+    EXPECT_NEAR(both.lines()[0].integral, 2.0 * 1.0 * 3.0, 1e-12);
+}
+
+TEST_F(SpectrumForms, AFilterAboveOneIsWarnedAbout) {
+    const auto warned = warnings_of([&] {
+        read("{ product = [5, { gaussian_nm = 500, sigma_nm = "
+             "20, scale = 1.5 }] }");
+    });
+    ASSERT_EQ(warned.size(), 1u);
+    EXPECT_NE(warned[0].find("scene.toml:9:14: product[1] goes up to 1.5"), std::string::npos)
+        << warned[0];
+    EXPECT_TRUE(warnings_of([&] { read("{ product = [5, 1.0] }"); }).empty());
+}
+
+TEST_F(SpectrumForms, ASumHasAScaleAndValuesAreCutAfterIt) {
+    const Spectrum s = read("{ sum = [1, { gaussian_nm = 520, sigma_nm = 20 }], scale = 2, min = "
+                            "2.5, max = 3 }");
+    EXPECT_EQ(s(520.0), 3.0);
+    EXPECT_EQ(s(700.0), 2.5);
+    EXPECT_NEAR(s(540.0), 3.0, 1e-12); // 2 + 2 exp(-1/2) is above
+    write("noisy.csv", "nm,value\n400,-0.1\n500,1\n");
+    EXPECT_EQ(read("{ file = \"noisy.csv\", min = 0 }")(400.0), 0.0);
+    EXPECT_EQ(error_column("{ sum = [1], min = 2, max = 1 }", "max is 1 and min 2"), 34);
+    EXPECT_EQ(error_column("{ product = [] }", "a product of 0 spectra"), 14);
+    EXPECT_EQ(error_column("{ product = 2 }", "product is"), 14);
+    EXPECT_EQ(error_column("{ product = [1, { nm = [400, 390], value = [1, 1] }] }", "nm[1]"), 41);
+}
+
 TEST_F(SpectrumForms, RgbBecomesAReflectance) {
     const Spectrum s = read("{ rgb = [0.8, 0.3, 0.1] }");
     EXPECT_GE(s.minimum(380.0, 780.0), 0.0);

@@ -213,7 +213,7 @@ TEST_F(Textures, NormalsNeedATextureThatHasThem) {
     EXPECT_TRUE(read.textures[0].is_normal_map);
 }
 
-TEST_F(Textures, MixturesNameAnotherPlainMaterialOrAPreset) {
+TEST_F(Textures, MixturesNameAnotherMaterialOrAPreset) {
     const Scene read = load_scene(
         scene("mix = { with = \"sugar\", weight = { texture = \"squares\" } }\n" + lambert("0.5"),
               CHECKER));
@@ -226,8 +226,11 @@ TEST_F(Textures, MixturesNameAnotherPlainMaterialOrAPreset) {
     };
     expect_error(mixed("with = \"none\", weight = 0.5"), "", 12, 9, "no material is called");
     expect_error(mixed("with = \"grey\", weight = 0.5"), "", 12, 9, "mixed with itself");
-    expect_error(mixed("with = \"sunstone\", weight = 0.5"), "", 12, 9, "is itself a mixture");
     expect_error(mixed("with = \"sugar\", weight = 1.5"), "", 12, 25, "at most 1");
+    // sunstone is a mixture itself, and brings what it is mixed with
+    const Scene nested = load_scene(scene(mixed("with = \"sunstone\", weight = 0.5"), ""));
+    ASSERT_EQ(nested.surfaces.size(), 3u);
+    EXPECT_EQ(nested.surfaces[1].mixed_with, 2);
     expect_error(mixed("with = \"sugar\""), "", 12, 7, "has no \"weight\"");
 }
 

@@ -65,6 +65,26 @@ TEST(CellMeasurement, BandsWithoutLightHaveNoRadianceFactor) {
             EXPECT_TRUE(std::isnan(beta[static_cast<std::size_t>(band)])) << band;
 }
 
+// A mercury lamp alone shows no white: L* was 2042 and beta_T 1.8e43 under such lamps.
+TEST(CellMeasurement, WhatIsRelativeToADarkWhiteIsLeftOut) {
+    const CellMeasurement cell =
+        measure_cell(bare(0.5), {}, {{"lamp", Spectrum::gaussian(365, 5, 1.0)}, lamp("D65")});
+    const auto is_left_out = [](double value) { return std::isnan(value); };
+    for (const SeenColour& colour : cell.colours) {
+        const bool dark = colour.illuminant == "lamp";
+        EXPECT_EQ(std::all_of(colour.xyz.begin(), colour.xyz.end(), is_left_out), dark);
+        EXPECT_EQ(std::all_of(colour.lab.begin(), colour.lab.end(), is_left_out), dark);
+        EXPECT_EQ(std::isnan(colour.reflected), dark);
+        for (const double factor : colour.beta_t)
+            EXPECT_TRUE(std::isnan(factor) || std::abs(factor - 0.5) < 1e-9) << factor;
+    }
+    EXPECT_TRUE(std::all_of(cell.polar[0].total.begin(), cell.polar[0].total.end(), is_left_out));
+    const auto says_so = [](const std::string& note) {
+        return note.find("lamp: a white surface is all but dark") == 0;
+    };
+    EXPECT_EQ(std::count_if(cell.notes.begin(), cell.notes.end(), says_so), 1);
+}
+
 TEST(CellMeasurement, PolarCurveHasTheHighlightOnTheMirrorSide) {
     Material material = bare(0.2);
     Layer layer;
@@ -112,8 +132,9 @@ TEST(CellMeasurement, DyedSheetsSendLightToBothSidesAndGuideIt) {
     StudyMeasuring measuring;
     measuring.theta_i_deg = {0.0};
     measuring.theta_o_deg = {30.0, 150.0};
-    const CellMeasurement cell =
-        measure_cell(sheet_of(layer), measuring, {{"line", Spectrum::line(400, 10, 10.0)}});
+    Spectrum lines = Spectrum::line(400, 10, 10.0);
+    lines += Spectrum::line(560, 10, 1.0); // shows a white, and excites nothing
+    const CellMeasurement cell = measure_cell(sheet_of(layer), measuring, {{"lines", lines}});
     const int in = cell.bands.band_of(400), out = cell.bands.band_of(500);
     const double leaves = cell.matrix(out, in) + cell.transmitted(out, in);
     EXPECT_NEAR(cell.transmitted(out, in), cell.matrix(out, in), 1e-6)

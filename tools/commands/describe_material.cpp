@@ -101,9 +101,10 @@ Json describe_surfaces(const Scene& scene) {
         return scene.textures[static_cast<std::size_t>(texture)].name;
     };
     Json surfaces = Json::array();
-    for (const Surface& surface : scene.surfaces) {
-        Json entry =
-            describe_material(scene.materials[static_cast<std::size_t>(surface.first_material)]);
+    for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
+        const Surface& surface = scene.surfaces[i];
+        // A textured one has its middle in its own place: its first variant may hold no dye.
+        Json entry = describe_material(scene.materials[i]);
         if (!surface.textures.empty())
             entry["variants"] = variant_count(scene, surface);
         for (const int texture : surface.textures)
@@ -112,6 +113,10 @@ Json describe_surfaces(const Scene& scene) {
             entry["normals"] = texture_name(surface.normal_texture);
         if (surface.mixed_with >= 0)
             entry["mixed_with"] = scene.surfaces[static_cast<std::size_t>(surface.mixed_with)].name;
+        if (!surface.is_opaque())
+            entry["opacity"] = surface.opacity_texture >= 0
+                                   ? Json(texture_name(surface.opacity_texture))
+                                   : Json(surface.opacity[0]);
         surfaces.push_back(std::move(entry));
     }
     return surfaces;

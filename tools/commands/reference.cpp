@@ -35,13 +35,20 @@ light = [
   { type = "rectangle", center = [0, 5, 0], edge_u = [1, 0, 0], edge_v = [0, 0, 1], radiance = { nm = [400, 700], value = [1, 2] } },
   { type = "sphere", center = [0, 5, 0], radius = 1, radiance = { illuminant = "D65", scale = 1 } },
   { type = "point", position = [0, 5, 0], intensity = { blackbody_kelvin = 3000, scale = 1 } },
-  { type = "directional", direction = [0, -1, 0], irradiance = { line_nm = 405, width_nm = 2, scale = 1 } },
+  { type = "directional", direction = [0, -1, 0], angle_deg = 1, irradiance = { line_nm = 405, width_nm = 2, scale = 1 } },
+  { type = "rectangle", center = [0, 5, 0], target = [0, 0, 0], size = [1, 1], radiance = { product = [{ illuminant = "D65" }, 0.5], scale = 1, min = 0, max = 9 } },
+  { type = "disk", center = [0, 5, 0], normal = [0, -1, 0], radius = 1, radiance = { sum = [1, 2], scale = 1 } },
+  { type = "disk", center = [0, 5, 0], target = [0, 0, 0], radius = 1, radiance = 1 },
+  { type = "mesh", file = "mesh.obj", scale = 2, rotate_deg = [0, 90, 0], translate = [0, 5, 0], radiance = 1 },
+  { type = "spot", position = [0, 5, 0], target = [0, 0, 0], cone_deg = 30, falloff_deg = 5, intensity = 1 },
   { type = "environment", radiance = { gaussian_nm = 500, sigma_nm = 20, scale = 1 } }]
 shape = [
   { type = "sphere", center = [0, 0, 0], radius = 1, material = "a" },
   { type = "rectangle", center = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [0, 0, 1], material = "a" },
   { type = "disk", center = [0, 0, 0], normal = [0, 1, 0], radius = 1, material = "a" },
   { type = "mesh", file = "mesh.obj", transform = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], face_normals = false, smooth_normals = true, flip_v = false, material = "a" },
+  { type = "cylinder", from = [0, 0, 0], to = [0, 1, 0], radius = 1, material = "a" },
+  { type = "instance", file = "mesh.obj", scale = [1, 2, 1], rotate_deg = [0, 90, 0], translate = [0, 5, 0], face_normals = true, smooth_normals = false, flip_v = false, material = "a" },
   { type = "heightfield", file = "grey.png", center = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [0, 0, 1], height = 1, material = "a" }]
 texture = [
   { name = "n", type = "noise", space = "world", size = 1, levels = 2, low = 0, high = 1, seed = 0, tilt_deg = 5, octaves = 1, sharpness = 1 },
@@ -52,6 +59,7 @@ texture = [
 name = "a"
 model = "auto"
 normal = { texture = "n" }
+opacity = { texture = "c" }
 mix = { with = "b", weight = { texture = "c" } }
 layer = [
   { ior = 1.5, roughness_deg = 5, distribution = "ggx", scattering = "multiple", thickness = { texture = "c", low = 0, high = 1 }, absorption = 0, scattering_coefficient = 0, anisotropy = 0, film = { thickness_nm = 300, ior = 1.4 } },
@@ -64,12 +72,16 @@ name = "b"
 substrate = { type = "conductor", ior = 0.2, kappa = 3, alpha = 0.1 }
 )",
     R"(
+include = ["more.toml"]
+light = [{ type = "sky", sun_elevation_deg = 40, sun_azimuth_deg = 0, sun = true, turbidity = 3, ground_albedo = 0.2, ozone_cm = 0.3, water_cm = 1, scale = 1 }]
+)",
+    R"(
 light = [{ type = "environment", file = "grey.png", rotation_deg = 0, radiance = { illuminant = "D65" } }]
 material = [
   { name = "a", preset = "red-lacquer" },
   { name = "b", substrate = { type = "oren-nayar", sigma = 0.3, reflectance = { file = "grey.csv" } } },
-  { name = "c", substrate = { type = "lambert", reradiation = { file = "synthetic-orange.csv" } } },
-  { name = "d", substrate = { type = "lambert", reradiation = { reflectance = 0.1, fluorophores = [{ excitation = 0.1, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9 }] } } },
+  { name = "c", substrate = { type = "lambert", reradiation = { file = "synthetic-orange.csv", strength = 0.5 } } },
+  { name = "d", substrate = { type = "lambert", reradiation = { reflectance = 0.1, fluorophores = [{ excitation = 0.1, concentration = 1, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9 }] } } },
   { name = "e", substrate = { type = "lambert", thickness = 1, backing = 0.5, pigments = [{ absorption = 1, scattering = 1, concentration = 1 }], dyes = [{ absorption = { gaussian_nm = 450, sigma_nm = 20 }, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9, concentration = 1 }] } },
   { name = "f", substrate = { type = "conductor", metal = "gold", roughness_deg = 5, distribution = "ggx", scattering = "single", film = { thickness_nm = 300, ior = 1.4 } } },
   { name = "g", substrate = { type = "oren-nayar", sigma = 0.3, thickness = 1, backing = 0.5, pigments = [{ absorption = 1, scattering = 1, concentration = 1 }], dyes = [{ absorption = { gaussian_nm = 450, sigma_nm = 20 }, emission = { gaussian_nm = 600, sigma_nm = 20 }, quantum_yield = 0.9, concentration = 1 }] } },
@@ -85,6 +97,7 @@ public:
         : folder(temporary_directory() / fmt::format("reradiant-reference-{}", ::getpid())) {
         fs::create_directories(folder);
         std::ofstream(folder / "mesh.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        std::ofstream(folder / "more.toml");
         std::ofstream(folder / "grey.csv") << "nm,value\n380,0.5\n780,0.5\n";
         write_png(folder / "grey.png", 2, 2, std::vector<std::uint8_t>(12, 128), true);
     }
@@ -128,7 +141,8 @@ constexpr const char* introduction =
 
 Made by `reradiant validate --reference` from what the loader asks for. A scene file holds the tables
 `[film]`, `[camera]`, `[integrator]`, `[[light]]`, `[[shape]]`, `[[material]]`, `[[texture]]`; a material
-file holds one `[material]`. Unknown keys and wrong values are errors with line and column.
+file holds one `[material]`. `include = ["materials.toml"]` at the head of a scene adds the materials and textures
+of other files, which may include others. Unknown keys and wrong values are errors with line and column.
 
 SPECTRUM is a number, one of the tables "SPECTRUM by ..." below, or a list of them, which are added. In
 materials it may be `{ texture = "name", low = ..., high = ... }`, also where "number or texture" stands.
@@ -138,15 +152,16 @@ materials it may be `{ texture = "name", low = ..., high = ... }`, also where "n
 
 std::string format_reference() {
     const SampleFiles files;
+    const fs::path file = files.folder / "sample.toml";
     KeyReference reference;
     for (const char* sample : samples)
-        scene_from_table(parse_toml("sample", std::string(sample_head) + sample),
-                         files.folder / "sample.toml");
+        scene_from_table(parse_toml(file.string(), std::string(sample_head) + sample), file);
     if (const auto missing = reference.missing_types(); !missing.empty())
         throw std::logic_error(fmt::format("no sample has the type {}", fmt::join(missing, ", ")));
     std::string text = introduction;
     for (const KeyReference::Table& table : reference.tables())
         if (table.name != "a scene" && table.name != "a material file" &&
+            table.name != "a file of materials" &&
             !table.name.starts_with("[material]")) // as [[material]]
             text += markdown_of(table);
     return text;

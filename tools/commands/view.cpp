@@ -2,6 +2,7 @@
 #include "host/base/logging.h"
 #include "host/base/output_ending.h"
 #include "host/report/json_file.h"
+#include "host/scene/lights/lamp_file.h"
 #include "host/scene/model/named_files.h"
 #include "host/view/export/exchange_files.h"
 #include "host/view/lights/lights_page.h"
@@ -50,7 +51,7 @@ std::vector<Lamp> asked_lamps(const ViewOptions& options) {
             }
     }
     for (const fs::path& file : options.lamp_files)
-        lamps.push_back(read_lamp(file));
+        lamps.push_back(read_lamp_file(file));
     return lamps;
 }
 

@@ -1,5 +1,6 @@
 #include "tools/program/display_options.h"
 
+#include "host/scene/lights/lamp_file.h"
 #include "reradiant/colour.h"
 #include "reradiant/error.h"
 
@@ -68,7 +69,7 @@ Lamp white_lamp(const char* option, const std::string& text) {
     std::error_code ignored;
     Lamp lamp;
     try {
-        lamp = std::filesystem::is_regular_file(text, ignored) ? read_lamp(text)
+        lamp = std::filesystem::is_regular_file(text, ignored) ? read_lamp_file(text)
                                                                : lamp_from_text(text);
     } catch (const std::invalid_argument& error) {
         throw_input_error({}, fmt::format("{}: {}", option, error.what()));

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <variant>
 
 namespace reradiant {
 
@@ -100,7 +102,9 @@ bool keep_cells(std::vector<std::vector<float>>& spectra, const WavelengthPlan& 
 } // namespace
 
 std::vector<std::string> light_group_names(const Scene& scene) {
-    constexpr const char* types[] = {"rectangle", "sphere", "point", "directional", "environment"};
+    constexpr const char* types[] = {"rectangle",   "sphere", "point", "directional",
+                                     "environment", "spot",   "disk",  "mesh"};
+    static_assert(std::size(types) == std::variant_size_v<Light>);
     std::vector<std::string> names;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         const bool is_named = i < scene.light_groups.size() && !scene.light_groups[i].empty();

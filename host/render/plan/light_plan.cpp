@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace reradiant {
 
 namespace {
+
+/// Of a mesh light's triangle in the tables: a share of the area and three corners.
+constexpr std::uint64_t FLOATS_A_TRIANGLE = 10;
 
 /// Lanes of a light's spectrum: sub-cell means on the comb (so that no power is lost between
 /// phases), values at the centres with a single phase; a line's power on its own lanes.
@@ -54,7 +58,10 @@ LightSpectrum image_spectrum(const EnvironmentLight& sky, const Image& image,
     const double brightness = mean_over_sphere(image);
     if (!(brightness > 0.0))
         return light; // black: nothing to sample
-    for (const Spectrum& primary : rgb_basis())
+    const auto& basis = rgb_basis();
+    const std::span<const Spectrum> primaries =
+        sky.primaries.empty() ? std::span<const Spectrum>(basis) : sky.primaries;
+    for (const Spectrum& primary : primaries)
         light.mean += append_spectrum(sky.radiance, primary, wavelengths, light.lanes) / 3.0;
     light.mean *= brightness;
     return light;
@@ -74,9 +81,16 @@ RenderFeatures features_of(const Light& light) {
     const auto* sky = std::get_if<EnvironmentLight>(&light);
     features.environment_image = sky != nullptr && sky->image >= 0;
     features.environment = sky != nullptr && sky->image < 0;
+    const auto* directional = std::get_if<DirectionalLight>(&light);
+    features.distant_lights = directional != nullptr && directional->angle_deg > 0.0;
     features.delta_lights = std::holds_alternative<PointLight>(light) ||
-                            std::holds_alternative<DirectionalLight>(light);
-    features.area_lights = sky == nullptr && !features.delta_lights;
+                            (directional != nullptr && !features.distant_lights);
+    features.spot_lights = std::holds_alternative<SpotLight>(light);
+    features.shaped_lights =
+        std::holds_alternative<DiskLight>(light) || std::holds_alternative<MeshLight>(light);
+    features.area_lights = features.shaped_lights ||
+                           std::holds_alternative<RectangleLight>(light) ||
+                           std::holds_alternative<SphereLight>(light);
     return features;
 }
 
@@ -130,6 +144,8 @@ LightPlan plan_lights(const Scene& scene, const WavelengthPlan& wavelengths, boo
         }
         if (features.environment && plan.environment == NO_INDEX)
             plan.environment = static_cast<std::uint32_t>(plan.lights.size() - 1);
+        if (const auto* mesh = std::get_if<MeshLight>(&light))
+            plan.floats += FLOATS_A_TRIANGLE * (mesh->mesh.indices.size() / 3);
         plan.floats += plan.lights.back().lanes.size();
         plan.features.add(features);
     }

@@ -29,10 +29,10 @@ struct RenderFeatures {
     void add(const RenderFeatures& other);
     /// True when paths may end with light that they meet: they then have a vertex more.
     bool has_emitters_to_meet() const {
-        return area_lights || environment || environment_image;
+        return area_lights || distant_lights || environment || environment_image;
     }
     bool samples_lights() const {
-        return area_lights || delta_lights || environment_image;
+        return area_lights || delta_lights || spot_lights || distant_lights || environment_image;
     }
     /// True when images colour lights or reflectances, so that vertices keep colours.
     bool has_colours() const {

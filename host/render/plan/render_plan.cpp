@@ -28,6 +28,12 @@ bool is_plain(const Surface& surface) {
     return surface.textures.empty() && surface.normal_texture < 0 && surface.mixed_with < 0;
 }
 
+/// True for a mixture with another mixture.
+bool is_nested(const Scene& scene, const Surface& surface) {
+    return surface.mixed_with >= 0 &&
+           scene.surfaces[static_cast<std::size_t>(surface.mixed_with)].mixed_with >= 0;
+}
+
 std::string model_note(const Material& material, const ModelChoice& choice) {
     const std::string note =
         fmt::format("material '{}': model {}", material.name, model_name(choice.model));
@@ -147,6 +153,8 @@ private:
             all.add(material.features);
         all.lens |= scene_.camera.lens_radius > 0.0;
         all.textures |= !std::all_of(scene_.surfaces.begin(), scene_.surfaces.end(), is_plain);
+        all.nested_mixtures |= std::ranges::any_of(
+            scene_.surfaces, [&](const Surface& surface) { return is_nested(scene_, surface); });
         all.scatter = plan_.film.scatter;
         all.band_variance = plan_.film.band_variance;
         all.chunks = plan_.wavelengths.padded_lanes() / WIDTH;

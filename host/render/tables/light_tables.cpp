@@ -1,9 +1,12 @@
 #include "host/render/tables/environment_tables.h"
 #include "host/render/tables/scene_tables.h"
+#include "host/scene/meshes/mesh_io.h"
+#include "kernels/core/sampling.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace reradiant {
 
@@ -34,10 +37,35 @@ void set_normal(LightRecord& record, const Vector3& direction) {
     record.nz = narrow(direction[2] / size);
 }
 
+/// Without cancellation in thin cones.
+double one_minus_cosine(double angle_deg) {
+    const double sine = std::sin(0.5 * angle_deg * std::numbers::pi / 180.0);
+    return 2.0 * sine * sine;
+}
+
+/// Appends what a light's points are sampled from (LightRecord::triangles) and says so in its
+/// record. Triangles without an area have no share.
+void append_mesh_light(const MeshShape& mesh, LightRecord& record, std::vector<float>& tables) {
+    const std::vector<double> areas = triangle_areas(mesh);
+    const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
+    record.radius_or_area = static_cast<float>(area);
+    record.triangles = static_cast<std::uint32_t>(tables.size());
+    record.triangle_count = static_cast<std::uint32_t>(areas.size());
+    double sum = 0.0;
+    for (const double part : areas) {
+        sum += part;
+        tables.push_back(static_cast<float>(sum / area));
+    }
+    for (const std::uint32_t vertex : mesh.indices)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            tables.push_back(mesh.positions[3 * std::size_t{vertex} + axis]);
+}
+
 /// Geometry of a light; returns the factor from its mean spectral value to its power (relative,
 /// for the choice among lights only).
 struct DescribeLight {
     LightRecord& record;
+    std::vector<float>& tables;
 
     double operator()(const RectangleLight& light) const {
         record.type = LIGHT_RECTANGLE;
@@ -59,14 +87,47 @@ struct DescribeLight {
         record.radius_or_area = narrow(light.radius);
         return 4.0 * std::numbers::pi * std::numbers::pi * light.radius * light.radius;
     }
+    double operator()(const DiskLight& light) const {
+        record.type = LIGHT_DISK;
+        set_position(record, light.centre);
+        set_normal(record, light.normal);
+        const double size = length(light.normal);
+        const kernels::Frame frame = kernels::sampling_frame(
+            kernels::vec3(light.normal[0] / size, light.normal[1] / size, light.normal[2] / size));
+        record.ux = narrow(frame.tangent.x * light.radius);
+        record.uy = narrow(frame.tangent.y * light.radius);
+        record.uz = narrow(frame.tangent.z * light.radius);
+        record.vx = narrow(frame.bitangent.x * light.radius);
+        record.vy = narrow(frame.bitangent.y * light.radius);
+        record.vz = narrow(frame.bitangent.z * light.radius);
+        const double area = std::numbers::pi * light.radius * light.radius;
+        record.radius_or_area = narrow(area);
+        return std::numbers::pi * area;
+    }
+    double operator()(const MeshLight& light) const {
+        record.type = LIGHT_MESH;
+        append_mesh_light(light.mesh, record, tables);
+        return std::numbers::pi * mesh_area(light.mesh);
+    }
+    double operator()(const SpotLight& light) const {
+        record.type = LIGHT_SPOT;
+        set_position(record, light.position);
+        set_normal(record, light.direction);
+        record.cone = narrow(one_minus_cosine(light.cone_deg));
+        record.full_cone = narrow(one_minus_cosine(light.cone_deg - light.falloff_deg));
+        // half of the falloff counts, as in pbrt-v4
+        return std::numbers::pi * (one_minus_cosine(light.cone_deg) +
+                                   one_minus_cosine(light.cone_deg - light.falloff_deg));
+    }
     double operator()(const PointLight& light) const {
         record.type = LIGHT_POINT;
         set_position(record, light.position);
         return 4.0 * std::numbers::pi;
     }
     double operator()(const DirectionalLight& light) const {
-        record.type = LIGHT_DIRECTIONAL;
+        record.type = light.angle_deg > 0.0 ? LIGHT_DISTANT : LIGHT_DIRECTIONAL;
         set_normal(record, light.direction);
+        record.cone = narrow(one_minus_cosine(0.5 * light.angle_deg));
         return std::numbers::pi;
     }
     /// A constant environment is found by the paths' own directions, an image is sampled too.
@@ -118,7 +179,8 @@ void append_lights(const Scene& scene, const LightPlan& plan, SceneTables& table
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         const LightSpectrum& spectrum = plan.lights[i];
         LightRecord record{};
-        powers.push_back(std::visit(DescribeLight{record}, scene.lights[i]) * spectrum.mean);
+        powers.push_back(std::visit(DescribeLight{record, tables.tables}, scene.lights[i]) *
+                         spectrum.mean);
         record.spectrum = static_cast<std::uint32_t>(tables.tables.size());
         tables.tables.insert(tables.tables.end(), spectrum.lanes.begin(), spectrum.lanes.end());
         const auto* sky = std::get_if<EnvironmentLight>(&scene.lights[i]);

@@ -1,50 +1,13 @@
 #include "host/render/tables/scene_tables.h"
 
-#include <cmath>
-#include <numbers>
+#include "host/scene/model/texture_record.h"
 
 namespace reradiant {
 
 namespace {
 
-std::uint32_t kernel_type(TextureType type) {
-    switch (type) {
-    case TextureType::Noise:
-        return TEXTURE_NOISE;
-    case TextureType::Voronoi:
-        return TEXTURE_VORONOI;
-    case TextureType::Checker:
-        return TEXTURE_CHECKER;
-    case TextureType::Image:
-        break;
-    }
-    return TEXTURE_IMAGE;
-}
-
 std::uint32_t index_or_none(int index) {
     return index < 0 ? NO_INDEX : static_cast<std::uint32_t>(index);
-}
-
-TextureRecord texture_record(const Texture& texture, const Scene& scene,
-                             const std::vector<std::uint32_t>& image_offsets) {
-    TextureRecord record{};
-    record.type = kernel_type(texture.type);
-    record.space = texture.space == TextureSpace::World ? TEXTURE_WORLD : TEXTURE_UV;
-    record.inverse_size = static_cast<float>(1.0 / texture.size);
-    record.octaves = static_cast<std::uint32_t>(texture.octaves);
-    record.tilt = static_cast<float>(std::tan(texture.tilt_deg * std::numbers::pi / 180.0));
-    record.sharpness = static_cast<float>(texture.sharpness);
-    record.share = static_cast<float>(texture.share);
-    record.is_normal_map = texture.is_normal_map ? 1u : 0u;
-    record.levels = static_cast<std::uint32_t>(std::max(texture.levels, 2));
-    record.seed = texture.seed;
-    if (texture.image >= 0) {
-        const Image& image = scene.images[static_cast<std::size_t>(texture.image)];
-        record.image = image_offsets[static_cast<std::size_t>(texture.image)];
-        record.width = static_cast<std::uint32_t>(image.width);
-        record.height = static_cast<std::uint32_t>(image.height);
-    }
-    return record;
 }
 
 SurfaceRecord surface_record(const Surface& surface) {
@@ -74,8 +37,11 @@ void append_surfaces(const Scene& scene, SceneTables& tables) {
         const Image& image = scene.images[static_cast<std::size_t>(texture.image)];
         tables.tables.insert(tables.tables.end(), image.rgb.begin(), image.rgb.end());
     }
-    for (const Texture& texture : scene.textures)
-        tables.textures.push_back(texture_record(texture, scene, image_offsets));
+    for (const Texture& texture : scene.textures) {
+        tables.textures.push_back(texture_record(texture));
+        if (const auto image = static_cast<std::size_t>(texture.image); texture.image >= 0)
+            set_image(scene.images[image], image_offsets[image], tables.textures.back());
+    }
     for (const Surface& surface : scene.surfaces)
         tables.surfaces.push_back(surface_record(surface));
     // scenes made by hand may leave the surfaces out: material i then is surface i

@@ -101,17 +101,21 @@ void LoadState::track(const Spectrum& spectrum, const SourcePosition& at, const 
     const auto same = [&](const Tracked& other) {
         return other.name == name && other.position.text() == at.text();
     };
-    if (std::none_of(tracked_.begin(), tracked_.end(), same))
-        tracked_.push_back({spectrum.data_from_nm(), spectrum.data_to_nm(), at, name});
+    if (std::any_of(tracked_.begin(), tracked_.end(), same))
+        return;
+    const double from = spectrum.data_from_nm(), to = spectrum.data_to_nm();
+    const bool is_dark = spectrum(from - 1.0) == 0.0 && spectrum(to + 1.0) == 0.0;
+    tracked_.push_back({from, to, is_dark, at, name});
 }
 
 void LoadState::warn_outside(double from_nm, double to_nm) const {
     for (const Tracked& spectrum : tracked_)
         if (spectrum.from_nm > from_nm || spectrum.to_nm < to_nm)
-            logging::warn("{}: {} has data from {} to {} nm but is used from {} to {} nm; its end "
-                          "values are kept outside (a built-in illuminant is dark there)",
+            logging::warn("{}: {} has data from {} to {} nm but is used from {} to {} nm; {}",
                           spectrum.position.text(), spectrum.name, spectrum.from_nm, spectrum.to_nm,
-                          from_nm, to_nm);
+                          from_nm, to_nm,
+                          spectrum.is_dark_outside ? "it is dark outside"
+                                                   : "its end values are kept outside");
 }
 
 } // namespace reradiant

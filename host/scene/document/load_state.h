@@ -8,6 +8,8 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -52,12 +54,15 @@ public:
     std::vector<Texture> textures;     ///< Scene::textures
     std::vector<Image> images;         ///< Scene::images
     std::vector<bool> image_is_linear; ///< true for each image that was read as data
+    /// Meshes of instances, by their file and how it is read.
+    std::map<std::string, std::shared_ptr<const MeshShape>> shared_meshes;
     /// Textures that the values read now may refer to; null outside materials.
     TextureScope* texture_scope = nullptr;
 
 private:
     struct Tracked {
         double from_nm, to_nm;
+        bool is_dark_outside; ///< as a built-in illuminant is
         SourcePosition position;
         std::string name;
     };

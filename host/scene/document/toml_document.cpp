@@ -52,7 +52,8 @@ void refuse_deep_keys(const std::string& file, std::string_view text) {
 } // namespace
 
 SourcePosition position_of(const std::string& file, const toml::source_region& region) {
-    return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+    return {region.path ? *region.path : file, static_cast<int>(region.begin.line),
+            static_cast<int>(region.begin.column)};
 }
 
 SourcePosition position_of(const std::string& file, const toml::node& node,
@@ -92,6 +93,34 @@ void place_keys(toml::table& table, const SourcePosition& position) {
         node.visit([&](auto& value) { placed.insert(made, std::move(value)); });
     }
     table = std::move(placed);
+}
+
+namespace {
+
+void lay_over_array(const toml::array& above, toml::array& below) {
+    for (std::size_t i = 0; i < above.size(); ++i) {
+        toml::table* const under = i < below.size() ? below[i].as_table() : nullptr;
+        if (under != nullptr && above[i].is_table())
+            lay_over(*above[i].as_table(), *under);
+        else
+            below.push_back(above[i]);
+    }
+}
+
+} // namespace
+
+void lay_over(const toml::table& above, toml::table& below) {
+    for (const auto& [key, node] : above) {
+        toml::node* const under = below.get(key.str());
+        if (under != nullptr && under->is_table() && node.is_table())
+            lay_over(*node.as_table(), *under->as_table());
+        else if (under != nullptr && under->is_array_of_tables() && node.is_array_of_tables())
+            lay_over_array(*node.as_array(), *under->as_array());
+        else {
+            below.erase(key.str());
+            below.insert(key, node); // the key brings its place along
+        }
+    }
 }
 
 toml::table parse_toml(const std::string& file, std::string_view bytes) {

@@ -13,7 +13,13 @@ namespace reradiant {
 /// the parser can take on its stack become input Errors with line and column.
 toml::table parse_toml(const std::string& file, std::string_view text);
 
-/// Returns the place in `file` where a region of source (a key or a node) starts.
+/// Puts the keys of one table over those of another: tables are joined key by key, arrays of tables
+/// element by element, and any other value takes the place of what was there. Keys keep their place
+/// and file.
+void lay_over(const toml::table& above, toml::table& below);
+
+/// Returns the place where a region of source (a key or a node) starts: in its own file, or in
+/// `file` where it does not say which.
 SourcePosition position_of(const std::string& file, const toml::source_region& region);
 /// Returns the place where a node starts. A node that was made rather than read has no place of its
 /// own, but its keys may have one (place_keys): then this is the place of the first of these, or

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -94,6 +95,26 @@ float mesh_coordinate(double value, const SourcePosition& at, const std::string&
         throw_input_error(at, fmt::format("{} is {}", name, value),
                           fmt::format("it must be finite and at most {} in size", MAX_COORDINATE));
     return static_cast<float>(value);
+}
+
+std::vector<double> triangle_areas(const MeshShape& mesh) {
+    const auto corner = [&](std::size_t index) {
+        return Eigen::Map<const Eigen::Vector3f>(
+                   &mesh.positions[3 * std::size_t{mesh.indices[index]}])
+            .cast<double>();
+    };
+    std::vector<double> areas;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const Eigen::Vector3d first = corner(i), u = corner(i + 1) - first,
+                              v = corner(i + 2) - first;
+        areas.push_back(0.5 * u.cross(v).norm());
+    }
+    return areas;
+}
+
+double mesh_area(const MeshShape& mesh) {
+    const std::vector<double> areas = triangle_areas(mesh);
+    return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
 } // namespace reradiant

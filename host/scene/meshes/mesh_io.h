@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace reradiant {
 
@@ -37,6 +38,11 @@ void append_face(const std::vector<std::uint32_t>& vertices, std::span<const Vec
 /// angle there (Thuermer and Wuethrich 1998). A vertex of no area gets zero, which means that the
 /// normal of the triangle is used for shading.
 void add_smooth_normals(MeshShape& mesh);
+
+/// Returns the area of each triangle.
+std::vector<double> triangle_areas(const MeshShape& mesh);
+/// Returns the area of all triangles.
+double mesh_area(const MeshShape& mesh);
 
 /// Returns a coordinate as float; throws an input Error at `at` that names it unless it is finite
 /// and at most 1e18 in size.

@@ -1,7 +1,10 @@
 #include "host/scene/mitsuba/mitsuba_scene.h"
 
+#include "host/base/logging.h"
+
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -17,6 +20,24 @@ toml::table point_light(const MitsubaObject& emitter, MitsubaScene& scene) {
                       {"position", toml_vector(emitter.point("position").value_or(at))}};
     light.insert(emitter.key("intensity", "intensity"),
                  mitsuba_emission(emitter, "intensity", scene));
+    return light;
+}
+
+/// Mitsuba's spots fall linearly in the angle, this program's smoothly in the cosine.
+toml::table spot_light(const MitsubaObject& emitter, MitsubaScene& scene) {
+    const Eigen::Matrix4d matrix = emitter.transform_or_identity("to_world");
+    const double cone = emitter.number_or("cutoff_angle", 20.0);
+    const double full = emitter.number_or("beam_width", 0.75 * cone);
+    toml::table light{{"type", "spot"},
+                      {"position", toml_vector(Vector(matrix.block<3, 1>(0, 3)))},
+                      {"direction", toml_vector(Vector(matrix.block<3, 1>(0, 2)))}};
+    light.insert(emitter.key("cone_deg", "cutoff_angle"), cone);
+    light.insert(emitter.key("falloff_deg", "beam_width"), std::max(0.0, cone - full));
+    light.insert(emitter.key("intensity", "intensity"),
+                 mitsuba_emission(emitter, "intensity", scene));
+    if (full < cone)
+        logging::warn("{}: the edge of a spot falls smoothly here, in Mitsuba linearly",
+                      scene.document().position(emitter.element()).text());
     return light;
 }
 
@@ -69,6 +90,8 @@ void add_mitsuba_emitter(const pugi::xml_node& element, MitsubaScene& scene) {
     toml::table light;
     if (emitter.type() == "point")
         light = point_light(emitter, scene);
+    else if (emitter.type() == "spot")
+        light = spot_light(emitter, scene);
     else if (emitter.type() == "directional")
         light = directional_light(emitter, scene);
     else if (emitter.type() == "constant")
@@ -76,7 +99,8 @@ void add_mitsuba_emitter(const pugi::xml_node& element, MitsubaScene& scene) {
     else if (emitter.type() == "envmap")
         light = environment_map(emitter, scene);
     else
-        emitter.refuse_type({"area (in a shape)", "point", "directional", "constant", "envmap"});
+        emitter.refuse_type(
+            {"area (in a shape)", "point", "spot", "directional", "constant", "envmap"});
     emitter.finish();
     scene.add("light", std::move(light), element);
 }

@@ -191,12 +191,13 @@ void add_area_light(const MitsubaObject& shape, const pugi::xml_node& element, t
     const MitsubaObject emitter(scene.document(), element);
     if (emitter.type() != "area")
         emitter.refuse_type({"area"});
-    const std::string form = light["type"].value_or(std::string());
-    if (form != "sphere" && form != "rectangle")
-        shape.fail(fmt::format("a {} that emits is not supported", shape.type()),
-                   "let a sphere, a rectangle or a mesh of one parallelogram emit");
-    if (shape.type() == "sphere" && flipped)
-        emitter.fail("a sphere that emits inwards is not supported", "let it emit outwards");
+    const bool is_mesh = light["type"].value_or(std::string()) == "mesh";
+    if ((shape.type() == "sphere" || is_mesh) && flipped)
+        emitter.fail(
+            fmt::format("a {} that emits inwards is not supported", is_mesh ? "mesh" : "sphere"),
+            "let it emit outwards");
+    light.erase("smooth_normals"); // what emits has no use for them
+    light.erase("face_normals");
     light.insert(emitter.key("radiance", "radiance"), mitsuba_emission(emitter, "radiance", scene));
     emitter.finish();
     const auto bsdfs = shape.nested("bsdf");

@@ -8,14 +8,16 @@
 namespace reradiant {
 
 const Spectrum& light_spectrum(const Light& light) {
-    struct Visitor {
-        const Spectrum& operator()(const RectangleLight& l) const { return l.radiance; }
-        const Spectrum& operator()(const SphereLight& l) const { return l.radiance; }
-        const Spectrum& operator()(const PointLight& l) const { return l.intensity; }
-        const Spectrum& operator()(const DirectionalLight& l) const { return l.irradiance; }
-        const Spectrum& operator()(const EnvironmentLight& l) const { return l.radiance; }
-    };
-    return std::visit(Visitor{}, light);
+    return std::visit(
+        [](const auto& kind) -> const Spectrum& {
+            if constexpr (requires { kind.intensity; })
+                return kind.intensity;
+            else if constexpr (requires { kind.irradiance; })
+                return kind.irradiance;
+            else
+                return kind.radiance;
+        },
+        light);
 }
 
 bool Substrate::is_fluorescent() const {

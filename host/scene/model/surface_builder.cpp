@@ -34,13 +34,24 @@ int SurfaceBuilder::mixed_with(std::size_t surface, const std::map<std::string, 
                           fmt::format("there are {} and the presets {}",
                                       fmt::join(known_names, ", "), fmt::join(presets, ", ")));
     }
-    if (static_cast<std::size_t>(other) == surface)
-        throw_input_error(at, fmt::format("\"{}\" is mixed with itself", name),
-                          "name another material");
-    if (!readings_[static_cast<std::size_t>(other)].mixed_with.empty())
-        throw_input_error(at, fmt::format("\"{}\" is itself a mixture", name),
-                          "mix with a material that is none");
     return other;
+}
+
+/// Refuses a mixture that holds itself, at the first material that is in its own mixture.
+void SurfaceBuilder::refuse_circles(const std::vector<int>& others) const {
+    const auto name = [&](std::size_t i) { return readings_[i].representative.name; };
+    for (std::size_t start = 0; start < others.size(); ++start) {
+        std::string way = fmt::format("\"{}\"", name(start));
+        std::size_t at = start;
+        for (std::size_t step = 0; step < others.size() && others[at] >= 0; ++step) {
+            at = static_cast<std::size_t>(others[at]);
+            way += fmt::format(" with \"{}\"", name(at));
+            if (at == start)
+                throw_input_error(readings_[start].mixed_with_position,
+                                  fmt::format("a material is mixed with itself: {}", way),
+                                  "let the last of them be no mixture, or name another material");
+        }
+    }
 }
 
 void SurfaceBuilder::finish(const std::map<std::string, int>& names, Scene& scene,
@@ -48,6 +59,7 @@ void SurfaceBuilder::finish(const std::map<std::string, int>& names, Scene& scen
     std::vector<int> others;
     for (std::size_t i = 0; i < readings_.size(); ++i) // grows by presets, which mix with none
         others.push_back(mixed_with(i, names, state));
+    refuse_circles(others);
     for (const MaterialReading& reading : readings_)
         scene.materials.push_back(reading.representative);
     for (std::size_t i = 0; i < readings_.size(); ++i) {
@@ -65,6 +77,8 @@ void SurfaceBuilder::finish(const std::map<std::string, int>& names, Scene& scen
         surface.mixed_with = others[i];
         surface.mix_weight = reading.mix_weight;
         surface.mix_texture = reading.mix_texture;
+        surface.opacity = reading.opacity;
+        surface.opacity_texture = reading.opacity_texture;
         scene.surfaces.push_back(std::move(surface));
     }
 }

@@ -16,6 +16,7 @@ public:
 
 private:
     int mixed_with(std::size_t surface, const std::map<std::string, int>& names, LoadState& state);
+    void refuse_circles(const std::vector<int>& others) const;
 
     std::vector<MaterialReading> readings_;
     std::map<std::string, int> appended_presets_;

@@ -29,7 +29,7 @@ TextureReference::End end_of(const toml::table& reference, const std::string& fi
 
 } // namespace
 
-TextureScope::TextureScope(const TableReader& root, LoadState& state) {
+void TextureScope::add(const TableReader& root, LoadState& state) {
     const auto tables = root.tables("texture");
     for (std::size_t i = 0; i < tables.size(); ++i) {
         Texture texture = read_texture(*tables[i], root.file(), i, state);

@@ -10,14 +10,22 @@
 
 namespace reradiant {
 
-/// The [[texture]] tables of one file, and where they stand while a material is read. A material
-/// is read once at the middle of every texture, which finds the textures that it uses, and then
-/// once per combination of their levels.
+/// The [[texture]] tables of a file and of those that it includes, and where they stand while a
+/// material is read. A material is read once at the middle of every texture, which finds the
+/// textures that it uses, and then once per combination of their levels.
 class TextureScope {
 public:
+    TextureScope() = default;
     /// Reads every [[texture]] of `root` into state.textures (and their images). `root` must
     /// outlive the scope: what t stands for is read where the texture is used.
-    TextureScope(const TableReader& root, LoadState& state);
+    TextureScope(const TableReader& root, LoadState& state) { add(root, state); }
+    /// Adds those of another file.
+    void add(const TableReader& root, LoadState& state);
+
+    /// Knows the textures of another scope, too, by those names that are not taken.
+    void add_from(const TextureScope& other) {
+        entries_.insert(other.entries_.begin(), other.entries_.end());
+    }
 
     struct Entry {
         int texture = 0; ///< into LoadState::textures

@@ -135,6 +135,78 @@ void read_mix(const TableReader& reader, MaterialReading& reading, LoadState& st
                  "use it as normal = { texture = ... }");
 }
 
+/// A number, or a texture with what its ends stand for.
+void read_opacity(const TableReader& reader, MaterialReading& reading, LoadState& state) {
+    const NumberRange share = NumberRange::within(0.0, 1.0);
+    const toml::node& node = reader.required("opacity");
+    if (!is_texture_reference(node)) {
+        reading.opacity.fill(number_at(node, reader.position_of_key("opacity"), "opacity", share));
+        return;
+    }
+    const TextureReference reference =
+        read_texture_reference(node, reader.file(), "opacity", state);
+    reading.opacity_texture = reference.texture;
+    reading.opacity = {0.0, 1.0};
+    for (const auto& [end, value] : {std::pair{&reference.low, &reading.opacity[0]},
+                                     std::pair{&reference.high, &reading.opacity[1]}})
+        if (end->node != nullptr)
+            *value = number_at(*end->node, position_of(end->file, *end->node), "opacity", share);
+}
+
+/// What a surface has besides its material.
+void read_surface_keys(const TableReader& reader, MaterialReading& reading, LoadState& state) {
+    reader.describe("normal", "texture");
+    if (reader.has("normal"))
+        read_normal(reader, reading, state);
+    if (reader.has("mix"))
+        read_mix(reader, reading, state);
+    reader.describe("opacity", "number or texture, at least 0 and at most 1", "1");
+    if (reader.has("opacity"))
+        read_opacity(reader, reading, state);
+}
+
+const std::vector<std::string> MATERIAL_KEYS{"name",   "model",  "layer", "substrate", "back",
+                                             "preset", "normal", "mix",   "opacity"};
+
+/// The file of a preset: one of spectra/materials, or any material file by a name that ends so.
+fs::path preset_file(const std::string& preset, const SourcePosition& at, LoadState& state) {
+    if (preset.ends_with(".toml"))
+        return state.resolve_and_digest(preset, at);
+    const auto known = preset_names();
+    if (std::find(known.begin(), known.end(), preset) == known.end())
+        throw_input_error(at, fmt::format("no preset is called \"{}\"", preset),
+                          fmt::format("there are: {}; a material file's name ends with .toml",
+                                      fmt::join(known, ", ")));
+    return state.resolve_and_digest(
+        (spectra_directory() / "materials" / (preset + ".toml")).string(), at);
+}
+
+/// A preset with the keys of `own` laid over it: all but its name and the preset's.
+MaterialReading read_preset_under(const toml::table& own, const std::string& preset,
+                                  const SourcePosition& at, LoadState& state) {
+    const fs::path path = preset_file(preset, at, state);
+    toml::table root = parse_toml(path.string(), read_file(path, at));
+    const TableReader preset_file(root, path.string(), "a material file", {"material", "texture"});
+    preset_file.plain_table("material");
+    toml::table& material = *root["material"].as_table();
+    if (const auto nested = material.find("preset"); nested != material.end())
+        throw_input_error(position_of(path.string(), nested->first.source()),
+                          "a preset refers to another preset", "write the material out");
+    toml::table above = own;
+    above.erase("name");
+    above.erase("preset");
+    lay_over(above, material);
+    TextureScope textures(preset_file, state);
+    TextureScope* const outer = state.texture_scope;
+    if (outer != nullptr && !above.empty())
+        textures.add_from(*outer);
+    state.texture_scope = &textures;
+    MaterialReading reading =
+        read_material(material, path.string(), MaterialPlace::PresetFile, state);
+    state.texture_scope = outer;
+    return reading;
+}
+
 } // namespace
 
 std::vector<std::string> preset_names() {
@@ -149,50 +221,28 @@ std::vector<std::string> preset_names() {
 }
 
 MaterialReading read_preset(const std::string& preset, const SourcePosition& at, LoadState& state) {
-    const auto known = preset_names();
-    if (std::find(known.begin(), known.end(), preset) == known.end())
-        throw_input_error(at, fmt::format("no preset is called \"{}\"", preset),
-                          fmt::format("there are: {}", fmt::join(known, ", ")));
-    const fs::path path = spectra_directory() / "materials" / (preset + ".toml");
-    state.resolve_and_digest(path.string(), at);
-    const toml::table root = parse_toml(path.string(), read_file(path, at));
-    const TableReader preset_file(root, path.string(), "a material file", {"material", "texture"});
-    TextureScope own_textures(preset_file, state);
-    TextureScope* const outer = std::exchange(state.texture_scope, &own_textures);
-    MaterialReading reading = read_material(preset_file.plain_table("material"), path.string(),
-                                            MaterialPlace::PresetFile, state);
-    state.texture_scope = outer;
-    return reading;
+    return read_preset_under({}, preset, at, state);
 }
 
 MaterialReading read_material(const toml::table& table, const std::string& file,
                               MaterialPlace place, LoadState& state) {
     const std::string name = place == MaterialPlace::Scene ? "[[material]]" : "[material]";
-    const TableReader reader(
-        table, file, name,
-        {"name", "model", "layer", "substrate", "back", "preset", "normal", "mix"});
+    const TableReader reader(table, file, name, MATERIAL_KEYS);
     if (place == MaterialPlace::Scene && reader.text("name").empty())
         reader.fail("name", "the name is empty", "give a name for shapes to refer to");
+    reader.describe("preset", "string");
     MaterialReading reading;
-    reader.describe("preset", "string"); // read below by a reader of its own
     if (reader.has("preset")) {
-        const TableReader named(table, file, "a material with a preset", {"name", "preset"});
-        if (place == MaterialPlace::PresetFile)
-            named.fail("preset", "a preset refers to another preset", "write the material out");
-        const std::string preset = named.text("preset");
-        reading = read_preset(preset, named.position_of_key("preset"), state);
-        const std::string own_name = named.text_or("name", preset);
+        const std::string preset = reader.text("preset");
+        reading = read_preset_under(table, preset, reader.position_of_key("preset"), state);
+        const std::string own_name = reader.text_or("name", fs::path(preset).stem().string());
         reading.representative.name = own_name;
         for (Material& variant : reading.variants)
             variant.name = own_name;
         return reading;
     }
     read_variants(reader, reading, state);
-    reader.describe("normal", "texture");
-    if (reader.has("normal"))
-        read_normal(reader, reading, state);
-    if (reader.has("mix"))
-        read_mix(reader, reading, state);
+    read_surface_keys(reader, reading, state);
     return reading;
 }
 

@@ -3,6 +3,8 @@
 #include "host/scene/document/load_state.h"
 #include "host/scene/document/table_reader.h"
 
+#include <array>
+
 namespace reradiant {
 
 /// A `MaterialReading` is the content of a [material] or [[material]] table: a material, or one per
@@ -17,10 +19,13 @@ struct MaterialReading {
     SourcePosition mixed_with_position;
     double mix_weight = 0.0;
     int mix_texture = -1;
+    std::array<double, 2> opacity{1.0, 1.0}; ///< Surface
+    int opacity_texture = -1;
 };
 
-/// `preset = "x"` reads spectra/materials/x.toml, which may not be a preset in its turn.
-/// state.texture_scope must hold the textures of the file.
+/// `preset = "x"` reads spectra/materials/x.toml, and `preset = "x.toml"` a material file beside
+/// this one; neither may be a preset in its turn. Other keys of the material are laid over what
+/// stands there (lay_over). state.texture_scope must hold the textures of the file.
 enum class MaterialPlace { Scene, MaterialFile, PresetFile };
 MaterialReading read_material(const toml::table& table, const std::string& file,
                               MaterialPlace place, LoadState& state);

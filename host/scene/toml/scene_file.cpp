@@ -1,11 +1,13 @@
 #include "reradiant/scene_file.h"
 
 #include "host/base/logging.h"
+#include "host/scene/lights/idle_lamps.h"
 #include "host/scene/mitsuba/mitsuba_import.h"
 #include "host/scene/model/joined_materials.h"
 #include "host/scene/model/matrix_grids.h"
 #include "host/scene/model/surface_builder.h"
 #include "host/scene/model/textured_value.h"
+#include "host/scene/toml/included_files.h"
 #include "host/scene/toml/material_reader.h"
 #include "host/scene/toml/scene_parts.h"
 #include "host/scene/toml/scene_table.h"
@@ -78,18 +80,24 @@ IntegratorSettings read_integrator(const TableReader& reader) {
 
 std::map<std::string, int> read_materials(const TableReader& root, Scene& scene, LoadState& state) {
     std::map<std::string, int> indices;
-    TextureScope textures(root, state);
+    const IncludedFiles included(root, state);
+    TextureScope textures;
+    for (const TableReader& file : included.readers())
+        textures.add(file, state);
     state.texture_scope = &textures;
     SurfaceBuilder builder;
-    for (const toml::table* table : root.tables("material")) {
-        MaterialReading reading = read_material(*table, root.file(), MaterialPlace::Scene, state);
-        if (!indices.emplace(reading.representative.name, static_cast<int>(indices.size())).second)
-            throw_input_error(
-                position_of(root.file(), table->find("name")->first.source()),
-                fmt::format("two materials are called \"{}\"", reading.representative.name),
-                "give each its own name");
-        builder.add(std::move(reading));
-    }
+    for (const TableReader& file : included.readers())
+        for (const toml::table* table : file.tables("material")) {
+            MaterialReading reading =
+                read_material(*table, file.file(), MaterialPlace::Scene, state);
+            if (!indices.emplace(reading.representative.name, static_cast<int>(indices.size()))
+                     .second)
+                throw_input_error(
+                    position_of(file.file(), table->find("name")->first.source()),
+                    fmt::format("two materials are called \"{}\"", reading.representative.name),
+                    "give each its own name");
+            builder.add(std::move(reading));
+        }
     builder.finish(indices, scene, state);
     state.texture_scope = nullptr;
     scene.textures = std::move(state.textures);
@@ -113,28 +121,56 @@ std::array<double, 2> used_range_nm(const Material& material,
                 : default_range_nm(material.is_fluorescent());
 }
 
-/// Constant environments add up to one; an image is looked up alone.
-void read_lights(const TableReader& root, Scene& scene, LoadState& state) {
-    const auto lights = root.tables("light");
+/// The sun of a sky, which is of the sky's group.
+struct Sun {
+    Light light;
+    SourcePosition place;
+    std::string group;
+};
+
+/// Constant environments add up to one; an image is looked up alone. The i-th light is that of the
+/// i-th table; the suns of skies follow after all. Returns the place of each light.
+std::vector<SourcePosition> read_all_lights(const TableReader& root, Scene& scene,
+                                            LoadState& state) {
+    const auto tables = root.tables("light");
+    std::vector<SourcePosition> places;
+    std::vector<Sun> suns;
     int skies = 0, images = 0;
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-        scene.lights.push_back(
-            read_light(*lights[i], root.file(), i, state, scene.light_groups.emplace_back()));
-        if (const auto* sky = std::get_if<EnvironmentLight>(&scene.lights.back())) {
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        const SourcePosition at = position_of(root.file(), *tables[i]);
+        std::string& group = scene.light_groups.emplace_back();
+        std::vector<Light> read = read_lights(*tables[i], root.file(), i, state, group);
+        if (const auto* sky = std::get_if<EnvironmentLight>(&read.front())) {
             ++skies;
             images += sky->image >= 0 ? 1 : 0;
         }
         if (images > 0 && skies > 1)
-            throw_input_error(position_of(root.file(), *lights[i]),
-                              "an environment image stands beside another environment",
+            throw_input_error(at, "an environment image stands beside another environment",
                               "put both into one image");
+        scene.lights.push_back(std::move(read.front()));
+        places.push_back(at);
+        if (read.size() > 1)
+            suns.push_back({std::move(read[1]), at, group});
     }
+    for (Sun& sun : suns) {
+        scene.lights.push_back(std::move(sun.light));
+        scene.light_groups.push_back(std::move(sun.group));
+        places.push_back(sun.place);
+    }
+    return places;
+}
+
+void warn_of_idle_lamps(const Scene& scene, const std::vector<SourcePosition>& places,
+                        LoadState& state) {
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        if (const std::string reason = idle_reason(scene.lights[i], scene); !reason.empty())
+            state.warn(places[i], fmt::format("the light lights nothing: {}", reason));
 }
 
 Scene read_scene(const toml::table& table, const std::filesystem::path& file, LoadState& state) {
     const TableReader root(
         table, file.string(), "a scene",
-        {"film", "camera", "integrator", "light", "shape", "material", "texture"});
+        {"film", "camera", "integrator", "light", "shape", "material", "texture", "include"});
     Scene scene;
     scene.file = file;
     scene.film = read_film(root.table("film", {"width", "height", "bands_nm"}));
@@ -142,13 +178,14 @@ Scene read_scene(const toml::table& table, const std::filesystem::path& file, Lo
         "camera", {"origin", "target", "up", "fov_deg", "lens_radius", "focus_distance"}));
     if (root.has("integrator"))
         scene.integrator = read_integrator(root.table("integrator", {"max_depth", "min_depth"}));
-    read_lights(root, scene, state);
+    const std::vector<SourcePosition> light_places = read_all_lights(root, scene, state);
     const auto materials = read_materials(root, scene, state);
     const auto shapes = root.tables("shape");
     for (std::size_t i = 0; i < shapes.size(); ++i)
         scene.shapes.push_back(read_shape(*shapes[i], root.file(), i, materials, state));
     scene.images = std::move(state.images);
     warn_outside_bands(scene, state);
+    warn_of_idle_lamps(scene, light_places, state);
     scene.hash = state.digest();
     return scene;
 }

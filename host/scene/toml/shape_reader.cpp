@@ -1,9 +1,5 @@
 #include "host/scene/toml/scene_parts.h"
 
-#include "host/scene/meshes/mesh_io.h"
-
-#include <Eigen/LU>
-
 #include <cmath>
 
 #include <fmt/format.h>
@@ -33,57 +29,12 @@ DiskShape read_disk(const TableReader& reader) {
     return disk;
 }
 
-/// Moves a mesh by the key `transform`, which holds the upper three rows of a matrix, row after
-/// row, and its normals by the inverse transpose.
-void transform_mesh(const TableReader& reader, MeshShape& mesh) {
-    reader.describe("transform", "array of 12 numbers");
-    const auto values =
-        numbers_at(reader.required("transform"), reader.file(), reader.position_of_key("transform"),
-                   "transform", 12, NumberRange::within(-MAX_COORDINATE, MAX_COORDINATE));
-    const Eigen::Matrix<double, 3, 4> matrix =
-        Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(values.data());
-    const Eigen::Matrix3d linear = matrix.leftCols<3>();
-    const double size = linear.norm();
-    if (!(std::abs(linear.determinant()) > 1e-18 * size * size * size))
-        reader.fail("transform", "the transform makes the mesh flat",
-                    "scale every axis by other than 0");
-    const SourcePosition at = reader.position_of_key("transform");
-    for (std::size_t k = 0; k + 2 < mesh.positions.size(); k += 3) {
-        const Eigen::Vector3f old = Eigen::Map<const Eigen::Vector3f>(&mesh.positions[k]);
-        const Eigen::Vector3d moved = linear * old.cast<double>() + matrix.col(3);
-        for (int c = 0; c < 3; ++c)
-            mesh.positions[k + static_cast<std::size_t>(c)] =
-                mesh_coordinate(moved[c], at, "a transformed coordinate");
-    }
-    // The normals of a mirrored mesh stay on the side that its triangles face.
-    const Eigen::Matrix3d normals =
-        linear.inverse().transpose() * (linear.determinant() < 0.0 ? -1.0 : 1.0);
-    for (std::size_t k = 0; k + 2 < mesh.normals.size(); k += 3) {
-        Eigen::Map<Eigen::Vector3f> normal(&mesh.normals[k]);
-        normal = (normals * normal.cast<double>()).normalized().cast<float>();
-    }
-}
-
-MeshShape read_mesh_key(const TableReader& reader, LoadState& state) {
-    const SourcePosition at = reader.position_of_key("file");
-    const std::filesystem::path file = state.resolve(reader.text("file"), at);
-    const std::string bytes = read_file(file, at, MAX_MESH_BYTES);
-    state.add_to_digest(bytes);
-    MeshShape mesh = parse_mesh(file, bytes);
-    if (reader.has("transform"))
-        transform_mesh(reader, mesh);
-    if (reader.flag_or("face_normals", false))
-        mesh.normals.clear();
-    if (reader.flag_or("smooth_normals", false)) {
-        if (reader.flag_or("face_normals", false))
-            reader.fail("smooth_normals", "smooth_normals stands beside face_normals", "keep one");
-        if (mesh.normals.empty())
-            add_smooth_normals(mesh);
-    }
-    if (reader.flag_or("flip_v", false))
-        for (std::size_t k = 1; k < mesh.texture_coordinates.size(); k += 2)
-            mesh.texture_coordinates[k] = 1.0f - mesh.texture_coordinates[k];
-    return mesh;
+CylinderShape read_cylinder(const TableReader& reader) {
+    CylinderShape cylinder{reader.vector("from"), reader.vector("to"),
+                           reader.number("radius", RADIUS)};
+    if (cylinder.from == cylinder.to)
+        reader.fail("to", "both ends of the cylinder are the same", "give two that lie apart");
+    return cylinder;
 }
 
 int read_material_name(const TableReader& reader, const std::map<std::string, int>& materials) {
@@ -126,8 +77,9 @@ std::array<Vector3, 2> read_edges(const TableReader& reader) {
 Shape read_shape(const toml::table& table, const std::string& file, std::size_t index,
                  const std::map<std::string, int>& materials, LoadState& state) {
     const std::string name = fmt::format("[[shape]] {}", index);
-    const std::string type =
-        type_of_table(table, file, name, {"sphere", "rectangle", "disk", "mesh", "heightfield"});
+    const std::string type = type_of_table(
+        table, file, name,
+        {"sphere", "rectangle", "disk", "cylinder", "mesh", "instance", "heightfield"});
     const auto keys = [&](std::vector<std::string> own) {
         own.insert(own.end(), {"type", "material"});
         return TableReader(table, file, fmt::format("{} ({})", name, type), own);
@@ -154,8 +106,14 @@ Shape read_shape(const toml::table& table, const std::string& file, std::size_t 
         const TableReader reader = keys({"file", "center", "edge_u", "edge_v", "height"});
         return finish(reader, read_heightfield(reader, state));
     }
-    const TableReader reader =
-        keys({"file", "transform", "face_normals", "smooth_normals", "flip_v"});
+    if (type == "cylinder") {
+        const TableReader reader = keys({"from", "to", "radius"});
+        return finish(reader, read_cylinder(reader));
+    }
+    const TableReader reader = keys({"file", "transform", "scale", "rotate_deg", "translate",
+                                     "face_normals", "smooth_normals", "flip_v"});
+    if (type == "instance")
+        return finish(reader, read_mesh_instance(reader, state));
     return finish(reader, read_mesh_key(reader, state));
 }
 

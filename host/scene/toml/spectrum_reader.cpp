@@ -1,6 +1,7 @@
 #include "host/scene/toml/spectrum_reader.h"
 
 #include "host/scene/model/textured_value.h"
+#include "host/spectral/spectrum/spectrum_operations.h"
 #include "host/spectral/text/wavelength_unit.h"
 #include "reradiant/colour.h"
 #include "reradiant/spectral_files.h"
@@ -16,7 +17,8 @@ namespace reradiant {
 namespace {
 
 const std::vector<std::string> FORMS{
-    "nm", "file", "rgb", "illuminant", "blackbody_kelvin", "line_nm", "gaussian_nm"};
+    "nm",      "file",        "rgb",     "illuminant", "blackbody_kelvin",
+    "line_nm", "gaussian_nm", "product", "sum"};
 const NumberRange ANY_VALUE = NumberRange::within(-1e18, 1e18);
 const NumberRange SCALE = NumberRange::within(0.0, 1e18);
 const NumberRange WAVELENGTH = NumberRange::within(1.0, 1e5);
@@ -27,13 +29,14 @@ constexpr double LONGEST_PEAK_NM = 2500.0;
 constexpr std::size_t MAX_TERMS = 1000;
 
 std::vector<std::string> keys_of_form(const std::string& form) {
+    std::vector<std::string> keys{form, "scale", "min", "max"};
     if (form == "nm")
-        return {"nm", "value", "scale"};
+        keys.insert(keys.begin() + 1, "value");
     if (form == "line_nm")
-        return {form, "width_nm", "scale"};
+        keys.insert(keys.begin() + 1, "width_nm");
     if (form == "gaussian_nm")
-        return {form, "sigma_nm", "scale"};
-    return {form, "scale"};
+        keys.insert(keys.begin() + 1, "sigma_nm");
+    return keys;
 }
 
 /// Returns the form that a table is in: the one key of FORMS that it holds.
@@ -50,7 +53,7 @@ std::string form_of(const toml::table& table, const std::string& file, const std
     if (found.size() == 1)
         return found[0];
     std::vector<std::string> known = FORMS;
-    known.insert(known.end(), {"value", "scale", "width_nm", "sigma_nm"});
+    known.insert(known.end(), {"value", "scale", "width_nm", "sigma_nm", "min", "max"});
     for (const auto& [key, node] : table)
         if (std::find(known.begin(), known.end(), key.str()) == known.end())
             throw_input_error(position_of(file, key.source()),
@@ -58,7 +61,7 @@ std::string form_of(const toml::table& table, const std::string& file, const std
                               suggestion(std::string(key.str()), FORMS));
     throw_input_error(at, fmt::format("{} does not say what spectrum it is", name),
                       "give one of nm and value, file, rgb, illuminant, blackbody_kelvin, line_nm, "
-                      "gaussian_nm");
+                      "gaussian_nm, product, sum");
 }
 
 Spectrum read_table(const TableReader& reader) {
@@ -144,6 +147,65 @@ Spectrum read_file(const TableReader& reader, LoadState& state) {
         state.resolve_and_digest(reader.text("file"), reader.position_of_key("file")));
 }
 
+Spectrum read_node(const toml::node& node, const std::string& file, const SourcePosition& at,
+                   const std::string& name, LoadState& state);
+
+/// The list that a sum or a product is made of.
+const toml::array& terms_of(const TableReader& reader, const std::string& form) {
+    reader.describe(form, "array of SPECTRUM");
+    const toml::node& node = reader.required(form);
+    const toml::array* terms = node.as_array();
+    if (terms == nullptr || terms->empty() || terms->size() > MAX_TERMS)
+        reader.fail(form,
+                    terms == nullptr ? fmt::format("{} is {}", form, toml_type_name(node))
+                                     : fmt::format("a {} of {} spectra", form, terms->size()),
+                    fmt::format("give a list of 1 to {} spectra", MAX_TERMS));
+    return *terms;
+}
+
+Spectrum read_term(const TableReader& reader, const std::string& form, std::size_t index,
+                   LoadState& state) {
+    const toml::node& term = terms_of(reader, form)[index];
+    return read_node(term, reader.file(),
+                     position_of(reader.file(), term, reader.position_of_key(form)),
+                     fmt::format("{}[{}]", form, index), state);
+}
+
+/// A lamp, and the filters before it: what is above 1 in one of these would add light.
+Spectrum read_product(const TableReader& reader, LoadState& state) {
+    const std::size_t count = terms_of(reader, "product").size();
+    Spectrum all = read_term(reader, "product", 0, state);
+    for (std::size_t i = 1; i < count; ++i) {
+        const Spectrum filter = read_term(reader, "product", i, state);
+        if (const double most = filter.maximum(CHECKED_FROM_NM, CHECKED_TO_NM); most > 1.0 + 1e-9)
+            state.warn(reader.position_of_key("product"),
+                       fmt::format("product[{}] goes up to {:.6g}: as a filter it adds light; "
+                                   "divide percent by 100, or put the lamp first",
+                                   i, most));
+        all = product(all, filter);
+    }
+    return all;
+}
+
+Spectrum read_sum(const TableReader& reader, LoadState& state) {
+    Spectrum all;
+    for (std::size_t i = 0; i < terms_of(reader, "sum").size(); ++i)
+        all += read_term(reader, "sum", i, state);
+    return all;
+}
+
+/// Cuts the values of a spectrum, which is scaled already, by the keys `min` and `max`.
+Spectrum read_cut(const TableReader& reader, Spectrum spectrum) {
+    const double low = reader.number_or("min", ANY_VALUE.low, ANY_VALUE);
+    const double high = reader.number_or("max", ANY_VALUE.high, ANY_VALUE);
+    if (!reader.has("min") && !reader.has("max"))
+        return spectrum;
+    if (!(low <= high))
+        reader.fail("max", fmt::format("max is {} and min {}", high, low),
+                    "give a max of at least min");
+    return cut_values(spectrum, low, high);
+}
+
 Spectrum read_form(const TableReader& reader, const std::string& form, LoadState& state) {
     if (form == "nm")
         return multiplied(reader, read_table(reader));
@@ -155,11 +217,12 @@ Spectrum read_form(const TableReader& reader, const std::string& form, LoadState
         return read_illuminant(reader);
     if (form == "blackbody_kelvin")
         return read_blackbody(reader);
+    if (form == "product")
+        return multiplied(reader, read_product(reader, state));
+    if (form == "sum")
+        return multiplied(reader, read_sum(reader, state));
     return read_peak(reader, form);
 }
-
-Spectrum read_node(const toml::node& node, const std::string& file, const SourcePosition& at,
-                   const std::string& name, LoadState& state);
 
 /// Reads a textured spectrum: low + t (high - low) at the level that the texture stands at.
 Spectrum read_textured(const toml::node& node, const std::string& file, const std::string& name,
@@ -188,8 +251,9 @@ Spectrum read_node(const toml::node& node, const std::string& file, const Source
         const std::string form = form_of(*table, file, name);
         const TableReader reader(*table, file, fmt::format("the spectrum {}", name),
                                  keys_of_form(form), fmt::format("SPECTRUM by {}", form));
-        Spectrum spectrum = read_form(reader, form, state);
-        state.track(spectrum, at, name);
+        Spectrum spectrum = read_cut(reader, read_form(reader, form, state));
+        if (form != "product" && form != "sum") // their parts are tracked
+            state.track(spectrum, at, name);
         return spectrum;
     }
     const toml::array* terms = node.as_array();

@@ -105,20 +105,22 @@ Lamp lamp_from_text(const std::string& text) {
 }
 
 Lamp read_lamp(const std::filesystem::path& file) {
-    const Spectrum data = read_spectrum(file);
+    return lamp_of_spectrum(file.filename().string(), read_spectrum(file), {file.string()});
+}
+
+Lamp lamp_of_spectrum(const std::string& name, const Spectrum& data, const SourcePosition& at) {
     const double from = std::max(data.data_from_nm(), 1.0),
                  to = std::min(data.data_to_nm(), share_to_nm + highest_nm);
     if (!(to > from))
-        throw_input_error({file.string()}, "a lamp needs more than one wavelength");
-    Lamp lamp{.name = file.filename().string(), .light = cut_to(data, from, to)};
+        throw_input_error(at, "a lamp needs more than one wavelength");
+    Lamp lamp{.name = name, .light = cut_to(data, from, to)};
     for (const double nm : data.breakpoints_nm())
         if (data(nm) < 0.0)
             throw_input_error(
-                {file.string()},
-                fmt::format("the lamp is negative at {:.6g} nm ({:.6g})", nm, data(nm)),
+                at, fmt::format("the lamp is negative at {:.6g} nm ({:.6g})", nm, data(nm)),
                 "power is at least 0; take the instrument's dark signal away");
     if (!(xyz_of(lamp.light)[1] > 0.0))
-        throw_input_error({file.string()}, "the lamp gives no visible light",
+        throw_input_error(at, "the lamp gives no visible light",
                           "a colour is relative to a white surface under the same light");
     return lamp;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "reradiant/colour_of_matrix.h"
+#include "reradiant/error.h"
 #include "reradiant/spectrum.h"
 
 #include <filesystem>
@@ -36,6 +37,9 @@ Lamp lamp_from_text(const std::string& text);
 /// Reads a lamp from any file of a spectrum; outside its data it is dark. Input Error, also where
 /// it is negative or dark in the visible.
 Lamp read_lamp(const std::filesystem::path& file);
+
+/// Makes a lamp of a spectrum, dark outside its data; input Error at `at` as for a file.
+Lamp lamp_of_spectrum(const std::string& name, const Spectrum& data, const SourcePosition& at);
 
 /// Returns a spectrum cut off outside [from, to], where it is 0. Tables and boxes are cut exactly;
 /// Gaussians and black bodies become tables of 1 nm. std::invalid_argument unless from < to, both

@@ -1,6 +1,9 @@
 #include "host/study/study/cell_measurement.h"
 
+#include "host/spectral/colour/lamp.h"
 #include "reradiant/colour.h"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,6 +56,26 @@ Eigen::VectorXd on_bands(const Spectrum& spectrum, const WavelengthGrid& bands) 
     return values;
 }
 
+/// A lamp's light by band, and whether a white surface under it is seen at all: what is relative to
+/// that is meaningless where it is not, as under an ultraviolet lamp alone.
+struct LightOnBands {
+    Eigen::VectorXd values;
+    bool shows_white = true;
+    double dark = 0.0; ///< a band with less is taken as dark
+};
+
+LightOnBands light_on_bands(const NamedIlluminant& illuminant, const WavelengthGrid& bands) {
+    /// Tails of a Gaussian, say, which no instrument could measure a factor by.
+    constexpr double least_share = 1e-6;
+    LightOnBands light{on_bands(illuminant.spectrum, bands), true, 0.0};
+    light.dark = least_share * light.values.maxCoeff();
+    light.shows_white = light.values.maxCoeff() > 0.0 &&
+                        faint_white_warning({.name = illuminant.name, .light = illuminant.spectrum},
+                                            Observer::Cie1931Deg2)
+                            .empty();
+    return light;
+}
+
 Xyz weighted(const Eigen::VectorXd& radiance, const std::vector<Xyz>& weights) {
     Xyz xyz{};
     for (std::size_t band = 0; band < weights.size(); ++band)
@@ -70,7 +93,8 @@ Eigen::VectorXd factor_times_light(const DirectionalMatrix& matrix, const Eigen:
 SeenColour seen(const Directions& directions, const DirectionalMatrix& matrix,
                 const NamedIlluminant& illuminant, const WavelengthGrid& bands) {
     const std::vector<Xyz> weights = xyz_weights(bands);
-    const Eigen::VectorXd light = on_bands(illuminant.spectrum, bands);
+    const LightOnBands lamp = light_on_bands(illuminant, bands);
+    const Eigen::VectorXd& light = lamp.values;
     const Eigen::VectorXd radiance = factor_times_light(matrix, light);
     SeenColour colour{illuminant.name,
                       std::get<0>(directions),
@@ -86,9 +110,13 @@ SeenColour seen(const Directions& directions, const DirectionalMatrix& matrix,
         colour.xyz[channel] = 100.0 * sample[channel] / white[1];
         white_100[channel] = 100.0 * white[channel] / white[1];
     }
-    colour.lab = xyz_to_lab(colour.xyz, white_100);
+    if (lamp.shows_white)
+        colour.lab = xyz_to_lab(colour.xyz, white_100);
+    else
+        colour.xyz = colour.lab = {not_a_number, not_a_number, not_a_number};
     for (int band = 0; band < bands.count; ++band)
-        colour.beta_t.push_back(light(band) > 0.0 ? radiance(band) / light(band) : not_a_number);
+        colour.beta_t.push_back(light(band) > lamp.dark ? radiance(band) / light(band)
+                                                        : not_a_number);
     return colour;
 }
 
@@ -121,9 +149,12 @@ double quantum_yield(const CellMeasurement& cell, const Spectrum& illuminant) {
 
 /// Luminous flux that a matrix and a diagonal make of a lamp's; that of the lamp is 100.
 double luminous_share(const Eigen::MatrixXd& matrix, const std::vector<double>& diagonal,
-                      const Spectrum& illuminant, const WavelengthGrid& bands) {
+                      const NamedIlluminant& illuminant, const WavelengthGrid& bands) {
     const std::vector<Xyz> weights = xyz_weights(bands);
-    const Eigen::VectorXd light = on_bands(illuminant, bands);
+    const LightOnBands lamp = light_on_bands(illuminant, bands);
+    if (!lamp.shows_white)
+        return not_a_number;
+    const Eigen::VectorXd& light = lamp.values;
     Eigen::VectorXd leaving = matrix * light;
     for (std::size_t band = 0; band < diagonal.size(); ++band) {
         const auto k = static_cast<Eigen::Index>(band);
@@ -132,8 +163,9 @@ double luminous_share(const Eigen::MatrixXd& matrix, const std::vector<double>& 
     return 100.0 * weighted(leaving, weights)[1] / weighted(light, weights)[1];
 }
 
-void add_whole_sample(SeenColour& colour, const CellMeasurement& cell, const Spectrum& lamp) {
-    colour.quantum_yield = quantum_yield(cell, lamp);
+void add_whole_sample(SeenColour& colour, const CellMeasurement& cell,
+                      const NamedIlluminant& lamp) {
+    colour.quantum_yield = quantum_yield(cell, lamp.spectrum);
     colour.reflected = luminous_share(cell.matrix, cell.specular, lamp, cell.bands);
     if (!cell.of_sheet())
         return;
@@ -183,8 +215,9 @@ PolarCurve polar_curve(const std::map<Directions, DirectionalMatrix>& matrices, 
                        const std::vector<double>& angles, const NamedIlluminant& illuminant,
                        const WavelengthGrid& bands) {
     const std::vector<Xyz> weights = xyz_weights(bands);
-    const Eigen::VectorXd light = on_bands(illuminant.spectrum, bands);
-    const double white = weighted(light, weights)[1];
+    const LightOnBands lamp = light_on_bands(illuminant, bands);
+    const Eigen::VectorXd& light = lamp.values;
+    const double white = lamp.shows_white ? weighted(light, weights)[1] : not_a_number;
     PolarCurve curve{theta_i, {}, {}, {}};
     for (const double angle : angles) {
         curve.angle_deg.push_back(angle);
@@ -248,8 +281,15 @@ CellMeasurement measure_cell(const Material& material, const StudyMeasuring& mea
     for (const auto& [directions, matrix] : by_directions(directional))
         for (const NamedIlluminant& illuminant : illuminants) {
             cell.colours.push_back(seen(directions, matrix, illuminant, cell.bands));
-            add_whole_sample(cell.colours.back(), cell, illuminant.spectrum);
+            add_whole_sample(cell.colours.back(), cell, illuminant);
         }
+
+    for (const NamedIlluminant& illuminant : illuminants)
+        if (!light_on_bands(illuminant, cell.bands).shows_white)
+            cell.notes.push_back(fmt::format(
+                "{}: a white surface is all but dark under this lamp, so that XYZ, Lab, luminous "
+                "flux and polar curves, which are relative to it, are left out",
+                illuminant.name));
 
     const std::vector<double> angles = polar_angles(cell.of_sheet());
     request.theta_o_deg = thetas_of(angles);

@@ -17,10 +17,12 @@ namespace reradiant {
 struct SeenColour {
     std::string illuminant;
     double theta_i_deg = 0.0, theta_o_deg = 0.0, phi_deg = 0.0;
-    /// Perfect diffuser Y = 100; Lab against the illuminant's own white.
+    /// Perfect diffuser Y = 100; Lab against the illuminant's own white. NaN, as are luminous flux
+    /// and polar curves, where that white is all but dark.
     std::array<double, 3> xyz{}, lab{};
     /// Total radiance factor of each band: of reflected and fluorescent light against the perfect
-    /// diffuser's. NaN where the illuminant is dark. May exceed 1.
+    /// diffuser's. NaN where the illuminant is dark (below 1e-6 of its strongest band). May exceed
+    /// 1.
     std::vector<double> beta_t;
     /// Photons re-radiated over photons absorbed, by the whole sample, hemispherically, at the
     /// bands that excite; NaN when nothing fluoresces.

@@ -1,6 +1,7 @@
 #include "host/study/study/sweep_apply.h"
 
 #include "host/scene/document/table_reader.h"
+#include "host/scene/model/dye_concentration.h"
 #include "host/scene/model/joined_materials.h"
 #include "host/scene/toml/scene_table.h"
 #include "host/study/study/sample_scene.h"
@@ -17,8 +18,6 @@ namespace reradiant {
 
 namespace {
 
-/// Wavelengths that a dye's spectra are written out at when its concentration changes.
-constexpr int first_dye_nm = 200, last_dye_nm = 1000;
 constexpr double most_of_dye = 1e9; // times the file's; optical depths stay finite
 
 bool is_meant(int wanted, std::size_t index) {
@@ -86,31 +85,6 @@ void apply_to_table(toml::table& scene, const ChosenValue& chosen) {
     }
 }
 
-/// More of a dye absorbs more, by Beer and Lambert: what passes is (1 - x)^c, and of that the
-/// substrate reflects the same share as before.
-void set_concentration(Substrate& substrate, int index, double concentration) {
-    std::vector<double> nm, ratio;
-    for (int wavelength = first_dye_nm; wavelength <= last_dye_nm; ++wavelength)
-        nm.push_back(wavelength);
-    ratio.assign(nm.size(), 1.0); // light that passes now over light that passed
-    for (std::size_t k = 0; k < substrate.fluorophores.size(); ++k) {
-        if (!is_meant(index, k))
-            continue;
-        std::vector<double> absorbed = substrate.fluorophores[k].excitation.at(nm);
-        for (std::size_t i = 0; i < nm.size(); ++i) {
-            const double before = 1.0 - absorbed[i];
-            const double after = std::pow(before, concentration);
-            absorbed[i] = 1.0 - after;
-            ratio[i] *= before > 0.0 ? after / before : 0.0;
-        }
-        substrate.fluorophores[k].excitation = Spectrum::table(nm, std::move(absorbed));
-    }
-    std::vector<double> reflectance = substrate.reflectance.at(nm);
-    for (std::size_t i = 0; i < nm.size(); ++i)
-        reflectance[i] *= ratio[i];
-    substrate.reflectance = Spectrum::table(std::move(nm), std::move(reflectance));
-}
-
 /// Multiplies the concentrations of dyes in a layer by a factor.
 void scale_dyes(Layer& layer, int index, double factor) {
     for (std::size_t k = 0; k < layer.dyes.size(); ++k)
@@ -124,7 +98,7 @@ void apply_concentration(Material& material, const Sweep& sweep, const SweepValu
         sweep.layer < 0 ? NumberRange::above(0.0) : NumberRange::within(0.0, most_of_dye);
     const double factor = number_at(value.node(), value.position, "concentration", range);
     if (sweep.layer < 0)
-        set_concentration(material.substrate, sweep.index, factor);
+        set_dye_concentration(material.substrate, sweep.index, factor);
     else
         scale_dyes(material.stack.layers.at(static_cast<std::size_t>(sweep.layer)), sweep.index,
                    factor);

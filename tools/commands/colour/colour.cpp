@@ -118,8 +118,10 @@ void add_lamp_options(Command& command, ColourOptions& options) {
                 "unknown name lists them all")
         .one_at_a_time();
     command
-        .option("--lamp", options.lamp_files,
-                "file of a lamp's spectrum (repeatable); outside its data it is dark")
+        .option(
+            "--lamp", options.lamp_files,
+            "file of a lamp's spectrum, or LAMP.toml with spectrum = SPECTRUM as in scenes, a lamp "
+            "behind a filter, say (repeatable); outside its data it is dark")
         .one_at_a_time();
     command.option("--uv-cut", options.uv_cut_nm,
                    "take the lamps away below this wavelength in nm");

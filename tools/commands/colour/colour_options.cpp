@@ -1,5 +1,6 @@
 #include "tools/commands/colour/colour_options.h"
 
+#include "host/scene/lights/lamp_file.h"
 #include "reradiant/error.h"
 
 #include <fmt/format.h>
@@ -55,7 +56,7 @@ void read_conditions(ColourOptions& options) {
     }
     for (const std::filesystem::path& file : options.lamp_files) {
         require_new(options.lamps, file.filename().string());
-        options.lamps.push_back(read_lamp(file));
+        options.lamps.push_back(read_lamp_file(file));
     }
     if (options.uv_cut_nm)
         for (Lamp& lamp : options.lamps)
