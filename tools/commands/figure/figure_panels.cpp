@@ -118,21 +118,22 @@ std::string PanelMaker::label_of(const MarkReference& reference,
 svg::Series PanelMaker::series_of(const MarkReference& reference, const PlotRequest& plot) const {
     constexpr double quantile = 1.96; // 95 % of a normal distribution
     const RegionValues& values = read(reference).values;
-    svg::Series series{.label = label_of(reference, plot.marks),
-                       .x = images_[reference.image].bands.centres_nm(),
-                       .y = values.radiance,
-                       .colour = colour_of(reference)};
-    for (std::size_t band = 0; band < series.y.size(); ++band) {
-        double error = values.radiance_stderr[band];
+    const std::vector<double> nm = images_[reference.image].bands.centres_nm();
+    svg::Series series{
+        .label = label_of(reference, plot.marks), .x = {}, .y = {}, .colour = colour_of(reference)};
+    for (std::size_t band = 0; band < nm.size(); ++band) {
+        if (nm[band] < plot.from_nm || nm[band] > plot.to_nm)
+            continue;
+        ValueRatio value{values.radiance[band], values.radiance_stderr[band]};
         if (plot.against) {
             const RegionValues& below = read(*plot.against).values;
-            const ValueRatio ratio =
-                ratio_of(series.y[band], error, below.radiance[band], below.radiance_stderr[band]);
-            series.y[band] = ratio.value;
-            error = ratio.standard_error;
+            value = ratio_of(value.value, value.standard_error, below.radiance[band],
+                             below.radiance_stderr[band]);
         }
-        series.low.push_back(series.y[band] - quantile * error);
-        series.high.push_back(series.y[band] + quantile * error);
+        series.x.push_back(nm[band]);
+        series.y.push_back(value.value);
+        series.low.push_back(value.value - quantile * value.standard_error);
+        series.high.push_back(value.value + quantile * value.standard_error);
     }
     return series;
 }

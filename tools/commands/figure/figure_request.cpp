@@ -165,9 +165,9 @@ void FigureReader::read_image(const toml::table& table) {
 }
 
 void FigureReader::read_plot(const toml::table& table) {
-    const TableReader reader(table, root_.file(),
-                             "[[plot]] " + std::to_string(request_.plots.size() + 1),
-                             {"name", "title", "marks", "against", "logarithmic", "aspect"});
+    const TableReader reader(
+        table, root_.file(), "[[plot]] " + std::to_string(request_.plots.size() + 1),
+        {"name", "title", "marks", "against", "logarithmic", "from_nm", "to_nm", "aspect"});
     PlotRequest plot;
     plot.name = reader.text("name");
     names_.add(plot.name, PanelReference::Kind::Plot, request_.plots.size(),
@@ -176,6 +176,8 @@ void FigureReader::read_plot(const toml::table& table) {
     plot.marks = names_.marks(reader, "marks");
     plot.against = names_.mark_or_none(reader, "against");
     plot.is_logarithmic = reader.flag_or("logarithmic", false);
+    plot.from_nm = reader.number_or("from_nm", plot.from_nm, NumberRange::at_least(0));
+    plot.to_nm = reader.number_or("to_nm", plot.to_nm, NumberRange::above(plot.from_nm));
     plot.aspect = reader.number_or("aspect", 0.0, NumberRange::within(0.1, 20));
     request_.plots.push_back(std::move(plot));
 }

@@ -42,6 +42,7 @@ struct PlotRequest {
     std::vector<MarkReference> marks;
     std::optional<MarkReference> against = {}; ///< ratios to this mark are shown
     bool is_logarithmic = false;
+    double from_nm = 0.0, to_nm = 1e9; ///< bands whose centres lie within are shown
     double aspect = 0.0;
 };
 
