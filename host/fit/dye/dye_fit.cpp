@@ -5,6 +5,7 @@
 #include "host/fit/dye/dye_start.h"
 #include "host/fit/dye/inner_filter.h"
 #include "host/fit/models/model_selection.h"
+#include "host/fit/solver/bounded_quadratic.h"
 #include "reradiant/error.h"
 
 #include <fmt/core.h>
@@ -26,6 +27,10 @@ using Clock = std::chrono::steady_clock;
 
 /// Depths that tables reach to at first, and at most: deeper layers look alike.
 constexpr double first_largest_depth = 8.0, last_largest_depth = 20.0;
+
+/// Steps after which it is seen which bands the data say nothing of; with these a fit takes
+/// hundreds more.
+constexpr int steps_before_judging = 25;
 
 /// A model at its minimum.
 struct Candidate {
@@ -78,22 +83,25 @@ private:
         const DyeParameters start = dye_start(problem, dyes, settings_.solver);
         model.keep_unit(start.emission);
         candidate.packed = model.packed(start);
-        minimise(candidate);
+        minimise(candidate, steps_before_judging);
+        hold_what_is_unseen(candidate);
         while (reaches_beyond_tables(candidate)) {
             const double depth = problem.samples.front().stack->largest_depth();
             set_largest_depth(prepared_, settings_, std::min(last_largest_depth, 2.5 * depth));
             minimise(candidate);
         }
-        hold_what_is_unseen(candidate);
         hold_yields_at_one(candidate);
         judge(candidate);
         return candidate;
     }
 
-    void minimise(Candidate& candidate) {
+    void minimise(Candidate& candidate, int most_iterations) {
+        SolverSettings solver = settings_.solver;
+        solver.most_iterations = std::min(solver.most_iterations, most_iterations);
         candidate.trace.append(
-            minimise_non_negative(*candidate.model, candidate.packed, settings_.solver, begin_));
+            minimise_non_negative(*candidate.model, candidate.packed, solver, begin_));
     }
+    void minimise(Candidate& candidate) { minimise(candidate, settings_.solver.most_iterations); }
 
     bool reaches_beyond_tables(const Candidate& candidate) const {
         const Vector all = candidate.model->parameters(candidate.packed).absorption.rowwise().sum();
@@ -151,7 +159,40 @@ private:
         minimise(candidate);
     }
 
+    /// Rounding of the tables may keep the cost from falling before the conditions of a minimum
+    /// hold to all digits. It is one where no step would lower the cost by what noise does not
+    /// notice.
+    void judge_convergence(Candidate& candidate) const {
+        constexpr double unnoticed = 1e-3, damping = 1e-9;
+        if (candidate.trace.converged)
+            return;
+        Vector residual;
+        Matrix jacobian;
+        const DyeModel& model = *candidate.model;
+        model.evaluate(candidate.packed, residual, &jacobian);
+        const Vector gradient = jacobian.transpose() * residual;
+        Quadratic<Matrix> quadratic{jacobian.transpose() * jacobian, {}};
+        for (Index k = 0; k < gradient.size(); ++k) // one that nothing depends on stays
+            quadratic.h(k, k) += quadratic.h(k, k) > 0.0 ? damping * quadratic.h(k, k) : 1.0;
+        quadratic.c = gradient - quadratic.h * candidate.packed;
+        const auto count = static_cast<std::size_t>(gradient.size());
+        std::vector<bool> free(count);
+        for (std::size_t k = 0; k < count; ++k)
+            free[k] = candidate.packed(static_cast<Index>(k)) > 0.0;
+        const auto end = minimise_quadratic(quadratic, std::vector<bool>(count, true), free);
+        if (!end)
+            return;
+        const Vector step = *end - candidate.packed;
+        const double gain = -gradient.dot(step) - 0.5 * step.dot(quadratic.h * step);
+        if (gain > unnoticed)
+            return;
+        candidate.trace.converged = true;
+        candidate.trace.stop_reason =
+            fmt::format("no step lowers the cost by more than {:.1e}", std::max(gain, 0.0));
+    }
+
     void judge(Candidate& candidate) const {
+        judge_convergence(candidate);
         const DyeModel& model = *candidate.model;
         const Index data = prepared_.problem.used_count();
         DyeEvidence& evidence = candidate.evidence;

@@ -14,6 +14,9 @@ using Row = Eigen::RowVectorXd;
 
 /// Nodes within the band that absorbs.
 constexpr int nodes = 8;
+/// Share of an emission's photons that is none: where no more lies above, less than the yield is
+/// sent out. Without this the last band of a tail would take all light, however dark it is.
+constexpr double nothing = 1e-3;
 
 /// Rise of an emission over a band: half that between its neighbours, bent smoothly so that it
 /// stays within twice the mean, which keeps the emission from falling below zero in the band.
@@ -63,24 +66,27 @@ EmissionShares::EmissionShares(const Eigen::VectorXd& emission, const Wavelength
     : emission_(emission), above_(Eigen::VectorXd::Zero(bands.count)), within_(above_),
       above_by_emission_(Eigen::MatrixXd::Zero(bands.count, bands.count)),
       within_by_emission_(above_by_emission_) {
-    // tails far below the band hold no digits, and there is no light there
-    constexpr double nothing = 1e-9;
-    double whole = 0.0, photons = 0.0; // photons: of the bands above
-    Row photons_by = Row::Zero(bands.count);
-    for (int k = 0; k < bands.count; ++k)
-        whole += emission(k) * bands.centre_nm(k);
+    double photons = 0.0, least = 0.0; // of the bands above, and what counts as none
+    Row photons_by = Row::Zero(bands.count), least_by = photons_by;
+    for (int k = 0; k < bands.count; ++k) {
+        least += nothing * emission(k) * bands.centre_nm(k);
+        least_by(k) = nothing * bands.centre_nm(k);
+    }
     const Quadrature& rule = gauss_legendre(nodes);
     for (int k = bands.count - 1; k >= 0; --k) {
         const BandEmission own(emission, k);
         const double nm = bands.centre_nm(k), step = bands.step_nm;
-        for (std::size_t j = 0; j < rule.nodes.size() && photons > nothing * whole; ++j) {
+        for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
             const double s = rule.nodes[j] - 0.5, li = nm + step * s;
             // means above s of 1, of the rise's shape, and of both times the wavelength
             const double one = 0.5 - s, bent = 0.125 - 0.5 * s * s;
             const double third = (0.125 - s * s * s) / 3.0;
             const double flat = nm * one + step * bent, steep = nm * bent + step * third;
-            const double left = photons + own.mean * flat + own.rise * steep;
-            const Row left_by = photons_by + flat * own.by_mean + steep * own.by_rise;
+            const double above = photons + own.mean * flat + own.rise * steep;
+            const double left = std::hypot(above, least);
+            const Row left_by =
+                (above / left) * (photons_by + flat * own.by_mean + steep * own.by_rise) +
+                (least / left) * least_by;
             const double sent = own.mean * one + own.rise * bent, w = rule.weights[j] * li / left;
             above_(k) += w;
             within_(k) += w * sent;
