@@ -76,7 +76,7 @@ struct DyeFitResult {
     /// Yield of all dyes together by the inner-filter correction, which leaves out what is
     /// re-absorbed and sent out again; NaN for geometries and units it does not know.
     double inner_filter_yield = 0.0;
-    ReradiationMatrix matrix; ///< of the dyes by themselves, see DyeFitResult::matrix in fit_dyes
+    ReradiationMatrix matrix; ///< of the dyes by themselves, see fit_dyes
     double spacing_nm = 0.0;
     int data_count = 0, parameters = 0, covariance_rank = 0;
     double noise = 0.0, reduced_chi_squared = 0.0, rmse = 0.0, relative_rmse = 0.0;
@@ -99,9 +99,10 @@ BispectralData read_dye_data(const std::filesystem::path& file, bool is_arbitrar
 /// lists that do not belong together and where nothing is left to fit.
 DyeFitResult fit_dyes(const std::vector<BispectralData>& data, const DyeFitSettings& settings);
 
-/// Writes the material with the fitted dyes in the layer as TOML that `render` and `measure` take.
-/// Atomic. std::invalid_argument for materials that were not read from a MATERIAL.toml.
+/// Writes a MATERIAL.toml with the fitted dyes in one of its layers (index) and with the optical
+/// depth of the first data set, as a file that `render` and `measure` take. Files that the material
+/// names are named from the new file's folder. Atomic.
 void write_dye_material(const std::filesystem::path& file, const DyeFitResult& result,
-                        const DyeFitSettings& settings);
+                        const std::filesystem::path& material, std::size_t layer);
 
 } // namespace reradiant
