@@ -58,9 +58,10 @@ DyeView view_of(const BispectralBlock& block, const BispectralData& data) {
 
 /// Readings that a full detector makes: from the ceiling up, or, without one, a plateau.
 Matrix saturated_in(const Matrix& value, const Matrix& used, std::optional<double> ceiling) {
+    constexpr double rounding = 1e-6;
     const Matrix seen = (used.array() > 0.0).select(value, 0.0);
     if (ceiling)
-        return (seen.array() >= *ceiling).cast<double>();
+        return (seen.array() >= (1.0 - rounding) * *ceiling).cast<double>();
     return saturated_entries(seen);
 }
 
@@ -134,7 +135,8 @@ DyeDataSet prepare_dye_data(const BispectralData& data, const DyeFitSettings& se
         const EntryErrors errors = entry_errors(block.value, block.sigma, used);
         Matrix sigma = errors.sigma;
         if (with_diagonal && set.views[b].cosine) {
-            const Matrix diagonal = entries.diagonal.cwiseProduct(known);
+            Matrix diagonal = entries.diagonal.cwiseProduct(known);
+            diagonal -= saturated_in(block.value, diagonal, settings.ceiling);
             if (errors.is_estimated)
                 take_noise_of_diagonal(block.value, diagonal, sigma);
             used += diagonal;

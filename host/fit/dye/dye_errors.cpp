@@ -157,7 +157,6 @@ DyeErrors dye_errors(const DyeModel& model, const Vector& packed, const DyeCovar
     const DyeModel::Places at = model.places();
     const Index a = model.absorption_basis().size(), e = model.emission_basis().size();
     const BandRange& emission = model.problem().emission;
-    const DyeSampleData& first = model.problem().samples.front();
     DyeErrors errors;
     errors.absorption.resize(model.problem().bands.count, model.dyes());
     errors.emission = Matrix::Zero(model.problem().bands.count, model.dyes());
@@ -174,8 +173,8 @@ DyeErrors dye_errors(const DyeModel& model, const Vector& packed, const DyeCovar
                           covariance.variance, largest, settings);
         };
         errors.quantum_yield.push_back(band_of(at.quantum_yield + dye, 1.0));
-        errors.absorption_at_peak.push_back(band_of(
-            peak_parameter(model, packed, dye), first.stack->largest_depth() / first.depth_factor));
+        errors.absorption_at_peak.push_back(
+            band_of(peak_parameter(model, packed, dye), model.problem().largest_absorption()));
     }
     if (model.problem().fits_scale) {
         const double sigma = normal_95 * covariance.sigma(at.scale);

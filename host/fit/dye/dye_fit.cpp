@@ -104,14 +104,11 @@ private:
     void minimise(Candidate& candidate) { minimise(candidate, settings_.solver.most_iterations); }
 
     bool reaches_beyond_tables(const Candidate& candidate) const {
+        constexpr double near = 0.8;
+        const DyeProblem& problem = prepared_.problem;
         const Vector all = candidate.model->parameters(candidate.packed).absorption.rowwise().sum();
-        for (const DyeSampleData& sample : prepared_.problem.samples) {
-            const double largest = sample.stack->largest_depth();
-            if (largest < last_largest_depth &&
-                sample.depth_factor * all.maxCoeff() > 0.8 * largest)
-                return true;
-        }
-        return false;
+        return problem.samples.front().stack->largest_depth() < last_largest_depth &&
+               all.maxCoeff() > near * problem.largest_absorption();
     }
 
     /// No dye sends out more photons than it takes.
@@ -213,18 +210,10 @@ private:
     bool is_estimated_ = false;
 };
 
-/// Depth over absorption of the data set that has most.
-double largest_factor(const DyeProblem& problem) {
-    double largest = 0.0;
-    for (const DyeSampleData& sample : problem.samples)
-        largest = std::max(largest, sample.depth_factor);
-    return largest;
-}
-
 void take_dyes(const Candidate& candidate, const DyeErrors& errors, DyeFitResult& result) {
     const DyeProblem& problem = candidate.model->problem();
     const DyeParameters at = candidate.model->parameters(candidate.packed);
-    const double step = problem.bands.step_nm, factor = largest_factor(problem);
+    const double step = problem.bands.step_nm, factor = problem.largest_factor();
     for (Index k = 0; k < candidate.model->dyes(); ++k) {
         const auto place = static_cast<std::size_t>(k);
         const BandedNumber& peak = errors.absorption_at_peak[place];

@@ -6,6 +6,7 @@
 #include <ceres/problem.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace reradiant {
@@ -68,6 +69,20 @@ Index DyeProblem::used_count() const {
     for (const DyeSampleData& sample : samples)
         count += sample.data->used_count();
     return count;
+}
+
+double DyeProblem::largest_factor() const {
+    double largest = 0.0;
+    for (const DyeSampleData& sample : samples)
+        largest = std::max(largest, sample.depth_factor);
+    return largest;
+}
+
+double DyeProblem::largest_absorption() const {
+    double largest = std::numeric_limits<double>::infinity();
+    for (const DyeSampleData& sample : samples)
+        largest = std::min(largest, sample.stack->largest_depth() / sample.depth_factor);
+    return largest;
 }
 
 DyeModel::DyeModel(const DyeProblem& problem, SmoothBasis absorption, SmoothBasis emission,
@@ -251,15 +266,12 @@ void DyeModel::evaluate(const Vector& packed, Vector& residual, Matrix* jacobian
 }
 
 double DyeModel::prior_weight(Index parameter) const {
-    return parameter < places().emission ? problem_->samples.front().depth_factor / deepest
-                                         : 1.0 / brightest;
+    return parameter < places().emission ? problem_->largest_factor() / deepest : 1.0 / brightest;
 }
 
 bool DyeModel::is_within_tables(const Vector& packed) const {
-    const double most = parameters(packed).absorption.rowwise().sum().maxCoeff();
-    return std::ranges::all_of(problem_->samples, [&](const DyeSampleData& sample) {
-        return sample.depth_factor * most <= sample.stack->largest_depth();
-    });
+    return parameters(packed).absorption.rowwise().sum().maxCoeff() <=
+           problem_->largest_absorption();
 }
 
 double DyeModel::chi_squared(const Vector& packed) const {

@@ -28,6 +28,10 @@ struct DyeProblem {
     bool fits_substrate = false; ///< the substrate's reflectance is not known
 
     Eigen::Index used_count() const;
+    /// Depth over absorption of the sample that has most dye.
+    double largest_factor() const;
+    /// Largest absorption that the tables of all samples hold.
+    double largest_absorption() const;
 };
 
 /// Parameters by name: what a fit says of the dyes.

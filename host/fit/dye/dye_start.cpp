@@ -18,6 +18,8 @@ using Index = Eigen::Index;
 constexpr double tried_depths[] = {0.1, 0.5, 2.0, 6.0};
 constexpr int steps_of_a_start = 8;
 constexpr double first_yield = 0.5;
+/// Largest start of a depth, of what the tables hold.
+constexpr double within_tables = 0.7;
 /// Least part of a spectrum's peak everywhere: at zero a band may seem to do nothing.
 constexpr double floor_of_peak = 1e-3;
 
@@ -74,6 +76,9 @@ DyeParameters at_depth(const DyeProblem& problem, const FactorCurves& curves, do
             curves.emission.col(k);
     }
     start.absorption = with_floor(start.absorption);
+    const double most = start.absorption.rowwise().sum().maxCoeff();
+    if (most > within_tables * problem.largest_absorption())
+        start.absorption *= within_tables * problem.largest_absorption() / most;
     start.emission.middleRows(problem.emission.first, problem.emission.count) =
         with_floor(start.emission.middleRows(problem.emission.first, problem.emission.count));
     start.emission.array().rowwise() /= start.emission.colwise().sum().array();
@@ -123,7 +128,7 @@ DyeParameters dye_start(const DyeProblem& problem, int dyes, const SolverSetting
         set_brightness(model, start);
         Vector packed = model.packed(start);
         const SolveTrace trace = minimise_non_negative(model, packed, few, begin);
-        if (trace.final_cost() < least) {
+        if (!trace.cost.empty() && trace.final_cost() < least) {
             least = trace.final_cost();
             best = model.parameters(packed);
         }
