@@ -22,7 +22,7 @@ namespace {
 
 struct TableOptions {
     bool full = false;
-    unsigned data_sets = 4, seed = 1;
+    unsigned data_sets = 2, seed = 1;
 };
 
 /// Means over the data sets and dyes, but the longest seconds.

@@ -125,24 +125,25 @@ DyeCovariance dye_covariance(const DyeModel& model, const Vector& packed, bool n
     return result;
 }
 
-std::vector<Index> unseen_emission(const DyeModel& model, const Vector& packed,
-                                   const Vector& sigma) {
-    constexpr double small_beside_peak = 0.02, clearly = 2.0;
-    const Index count = model.emission_basis().size();
+std::vector<Index> unseen_coefficients(const DyeModel& model, DyeSpectrum which,
+                                       const Vector& packed, const Vector& sigma) {
+    constexpr double small_beside_best = 0.02, clearly = 2.0;
+    const bool is_emission = which == DyeSpectrum::Emission;
+    const Index count =
+        is_emission ? model.emission_basis().size() : model.absorption_basis().size();
     std::vector<Index> unseen;
     for (int dye = 0; dye < model.dyes(); ++dye) {
-        const Index first = model.places().emission + dye * count;
-        Index peak = 0;
-        const Vector significance =
-            packed.segment(first, count).cwiseQuotient(sigma.segment(first, count).cwiseMax(1e-12));
-        significance.maxCoeff(&peak);
-        const double largest = packed(first + peak);
+        const Index first = (is_emission ? model.places().emission : 0) + dye * count;
+        Index best = 0;
+        packed.segment(first, count)
+            .cwiseQuotient(sigma.segment(first, count).cwiseMax(1e-12))
+            .maxCoeff(&best);
         for (const Index step : {-1, 1}) {
             bool is_beyond = false;
-            for (Index k = peak; k >= 0 && k < count; k += step) {
-                const bool is_uncertain = sigma(first + k) > small_beside_peak * largest;
-                is_beyond =
-                    is_beyond || (is_uncertain && packed(first + k) <= clearly * sigma(first + k));
+            for (Index k = best; k >= 0 && k < count && (is_emission || step > 0); k += step) {
+                const double error = sigma(first + k);
+                const bool is_uncertain = error > small_beside_best * packed(first + best);
+                is_beyond = is_beyond || (is_uncertain && packed(first + k) <= clearly * error);
                 if (is_beyond && is_uncertain)
                     unseen.push_back(first + k);
             }

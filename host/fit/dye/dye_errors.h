@@ -16,11 +16,14 @@ struct DyeCovariance {
 DyeCovariance dye_covariance(const DyeModel& model, const Eigen::VectorXd& packed,
                              bool noise_is_estimated);
 
-/// Coefficients of emissions that the data do not show: from the best seen on either side all that
+/// Coefficients of a kind of spectra that the data do not show: from the best seen one on all that
 /// are uncertain beside it, beyond the first that is no larger than two standard errors. A dye that
-/// absorbs nothing at short waves, for example, says nothing of an emission there.
-std::vector<Eigen::Index> unseen_emission(const DyeModel& model, const Eigen::VectorXd& packed,
-                                          const Eigen::VectorXd& sigma);
+/// absorbs nothing at short waves, for example, says nothing of an emission there, nor does one of
+/// its absorption where it sends out nothing; that is looked for towards longer waves alone.
+enum class DyeSpectrum { Absorption, Emission };
+std::vector<Eigen::Index> unseen_coefficients(const DyeModel& model, DyeSpectrum which,
+                                              const Eigen::VectorXd& packed,
+                                              const Eigen::VectorXd& sigma);
 
 /// Errors of fitted dyes.
 struct DyeErrors {

@@ -84,7 +84,8 @@ private:
         model.keep_unit(start.emission);
         candidate.packed = model.packed(start);
         minimise(candidate, steps_before_judging);
-        hold_what_is_unseen(candidate);
+        hold_what_is_unseen(candidate, DyeSpectrum::Emission);
+        hold_what_is_unseen(candidate, DyeSpectrum::Absorption);
         while (reaches_beyond_tables(candidate)) {
             const double depth = problem.samples.front().stack->largest_depth();
             set_largest_depth(prepared_, settings_, std::min(last_largest_depth, 2.5 * depth));
@@ -129,19 +130,20 @@ private:
     }
 
     /// What the data do not show is taken as dark, with its error, where that fits as well.
-    void hold_what_is_unseen(Candidate& candidate) {
+    void hold_what_is_unseen(Candidate& candidate, DyeSpectrum which) {
         constexpr double as_well = 4.0; // rise of chi squared a number
         const Vector sigma =
             dye_covariance(*candidate.model, candidate.packed, is_estimated_).sigma;
         const std::vector<Index> unseen =
-            unseen_emission(*candidate.model, candidate.packed, sigma);
-        candidate.unseen = Vector::Zero(sigma.size());
+            unseen_coefficients(*candidate.model, which, candidate.packed, sigma);
+        if (candidate.unseen.size() == 0)
+            candidate.unseen = Vector::Zero(sigma.size());
         if (unseen.empty())
             return;
         const double limit = candidate.model->chi_squared(candidate.packed) +
                              as_well * static_cast<double>(unseen.size());
         const DyeModel all = *candidate.model;
-        const Vector before = candidate.packed;
+        const Vector before = candidate.packed, unseen_before = candidate.unseen;
         for (const Index k : unseen) {
             candidate.packed(k) = 0.0;
             candidate.unseen(k) = sigma(k);
@@ -152,7 +154,7 @@ private:
             return;
         *candidate.model = all;
         candidate.packed = before;
-        candidate.unseen.setZero();
+        candidate.unseen = unseen_before;
         minimise(candidate);
     }
 
