@@ -1,4 +1,4 @@
-#include "reradiant/dye_fit.h"
+#include "host/fit/dye/dye_fit.h"
 
 #include "host/fit/dye/dye_model.h"
 #include "host/fit/dye/dye_problem.h"

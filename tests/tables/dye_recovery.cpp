@@ -2,7 +2,7 @@
 // table: one line a case, the mean of several data sets, and what the inner-filter correction makes
 // of the same data where it is told the dye's true absorption.
 #include "host/fit/dye/dye_problem.h"
-#include "host/fit/dye/inner_filter.h"
+#include "host/fit/dye/result/inner_filter.h"
 #include "reradiant/error.h"
 #include "tests/tables/dye_recovery_cases.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reradiant/dye_fit.h"
+#include "host/fit/dye/dye_fit.h"
 #include "reradiant/synth.h"
 
 #include <vector>

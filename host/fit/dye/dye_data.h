@@ -1,7 +1,7 @@
 #pragma once
 
+#include "host/fit/dye/dye_fit.h"
 #include "host/fit/dye/dye_response.h"
-#include "reradiant/dye_fit.h"
 
 #include <Eigen/Core>
 

@@ -1,17 +1,14 @@
-#include "reradiant/dye_fit.h"
+#include "host/fit/dye/dye_fit.h"
 
-#include "host/fit/dye/dye_errors.h"
-#include "host/fit/dye/dye_problem.h"
-#include "host/fit/dye/dye_start.h"
-#include "host/fit/dye/inner_filter.h"
+#include "host/fit/dye/dye_search.h"
+#include "host/fit/dye/result/dye_errors.h"
+#include "host/fit/dye/result/inner_filter.h"
 #include "host/fit/models/model_selection.h"
-#include "host/fit/solver/bounded_quadratic.h"
 #include "reradiant/error.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -23,196 +20,8 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Index = Eigen::Index;
-using Clock = std::chrono::steady_clock;
 
-/// Depths that tables reach to at first, and at most: deeper layers look alike.
-constexpr double first_largest_depth = 8.0, last_largest_depth = 20.0;
-
-/// Steps after which it is seen which bands the data say nothing of; with these a fit takes
-/// hundreds more.
-constexpr int steps_before_judging = 25;
-
-/// A model at its minimum.
-struct Candidate {
-    std::unique_ptr<DyeModel> model;
-    Vector packed, unseen; ///< unseen: standard errors of what is taken as dark, else 0
-    SolveTrace trace;
-    DyeEvidence evidence;
-};
-
-/// One fit: its data, and the steps from a first guess to the number of dyes.
-class DyeFit {
-public:
-    DyeFit(const std::vector<BispectralData>& data, const DyeFitSettings& settings)
-        : settings_(settings), begin_(Clock::now()),
-          prepared_(prepare_dyes(data, settings, first_largest_depth)) {
-        is_estimated_ = std::ranges::all_of(prepared_.sets, &DyeDataSet::noise_is_estimated);
-    }
-
-    const PreparedDyes& prepared() const { return prepared_; }
-    bool noise_is_estimated() const { return is_estimated_; }
-    double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
-
-    /// The number of dyes that is asked for, or as many as lower the criterion.
-    Candidate best(std::vector<DyeEvidence>& evidence) {
-        Candidate best;
-        const int first = settings_.dyes.value_or(1),
-                  last = settings_.dyes.value_or(most_fitted_dyes);
-        for (int dyes = first; dyes <= last; ++dyes) {
-            Candidate next = fitted(dyes);
-            evidence.push_back(next.evidence);
-            const bool is_better =
-                !best.model ||
-                (next.trace.converged && next.evidence.criterion < best.evidence.criterion);
-            if (!is_better)
-                break;
-            best = std::move(next);
-        }
-        return best;
-    }
-
-private:
-    Candidate fitted(int dyes) {
-        DyeProblem& problem = prepared_.problem;
-        const WavelengthGrid& emission = prepared_.sets.front().data.emission;
-        const double spacing = settings_.smooth_nm.value_or(0.0);
-        Candidate candidate;
-        candidate.model = std::make_unique<DyeModel>(problem, spline_basis(problem.bands, spacing),
-                                                     spline_basis(emission, spacing), dyes);
-        DyeModel& model = *candidate.model;
-        const DyeParameters start = dye_start(problem, dyes, settings_.solver);
-        model.keep_unit(start.emission);
-        candidate.packed = model.packed(start);
-        minimise(candidate, steps_before_judging);
-        hold_what_is_unseen(candidate, DyeSpectrum::Emission);
-        hold_what_is_unseen(candidate, DyeSpectrum::Absorption);
-        while (reaches_beyond_tables(candidate)) {
-            const double depth = problem.samples.front().stack->largest_depth();
-            set_largest_depth(prepared_, settings_, std::min(last_largest_depth, 2.5 * depth));
-            minimise(candidate);
-        }
-        hold_yields_at_one(candidate);
-        judge(candidate);
-        return candidate;
-    }
-
-    void minimise(Candidate& candidate, int most_iterations) {
-        SolverSettings solver = settings_.solver;
-        solver.most_iterations = std::min(solver.most_iterations, most_iterations);
-        candidate.trace.append(
-            minimise_non_negative(*candidate.model, candidate.packed, solver, begin_));
-    }
-    void minimise(Candidate& candidate) { minimise(candidate, settings_.solver.most_iterations); }
-
-    bool reaches_beyond_tables(const Candidate& candidate) const {
-        constexpr double near = 0.8;
-        const DyeProblem& problem = prepared_.problem;
-        const Vector all = candidate.model->parameters(candidate.packed).absorption.rowwise().sum();
-        return problem.samples.front().stack->largest_depth() < last_largest_depth &&
-               all.maxCoeff() > near * problem.largest_absorption();
-    }
-
-    /// No dye sends out more photons than it takes.
-    void hold_yields_at_one(Candidate& candidate) {
-        for (int round = 0; round < candidate.model->dyes(); ++round) {
-            const Index first = candidate.model->places().quantum_yield;
-            bool is_held = false;
-            for (Index dye = 0; dye < candidate.model->dyes(); ++dye)
-                if (double& yield = candidate.packed(first + dye); yield > 1.0) {
-                    yield = 1.0;
-                    candidate.model->hold(first + dye);
-                    is_held = true;
-                }
-            if (!is_held)
-                return;
-            minimise(candidate);
-        }
-    }
-
-    /// What the data do not show is taken as dark, with its error, where that fits as well.
-    void hold_what_is_unseen(Candidate& candidate, DyeSpectrum which) {
-        constexpr double as_well = 4.0; // rise of chi squared a number
-        const Vector sigma =
-            dye_covariance(*candidate.model, candidate.packed, is_estimated_).sigma;
-        const std::vector<Index> unseen =
-            unseen_coefficients(*candidate.model, which, candidate.packed, sigma);
-        if (candidate.unseen.size() == 0)
-            candidate.unseen = Vector::Zero(sigma.size());
-        if (unseen.empty())
-            return;
-        const double limit = candidate.model->chi_squared(candidate.packed) +
-                             as_well * static_cast<double>(unseen.size());
-        const DyeModel all = *candidate.model;
-        const Vector before = candidate.packed, unseen_before = candidate.unseen;
-        for (const Index k : unseen) {
-            candidate.packed(k) = 0.0;
-            candidate.unseen(k) = sigma(k);
-            candidate.model->hold(k);
-        }
-        minimise(candidate);
-        if (candidate.model->chi_squared(candidate.packed) <= limit)
-            return;
-        *candidate.model = all;
-        candidate.packed = before;
-        candidate.unseen = unseen_before;
-        minimise(candidate);
-    }
-
-    /// Rounding of the tables may keep the cost from falling before the conditions of a minimum
-    /// hold to all digits. It is one where no step would lower the cost by what noise does not
-    /// notice.
-    void judge_convergence(Candidate& candidate) const {
-        constexpr double unnoticed = 1e-3, damping = 1e-9;
-        if (candidate.trace.converged)
-            return;
-        Vector residual;
-        Matrix jacobian;
-        const DyeModel& model = *candidate.model;
-        model.evaluate(candidate.packed, residual, &jacobian);
-        const Vector gradient = jacobian.transpose() * residual;
-        Quadratic<Matrix> quadratic{jacobian.transpose() * jacobian, {}};
-        for (Index k = 0; k < gradient.size(); ++k) // one that nothing depends on stays
-            quadratic.h(k, k) += quadratic.h(k, k) > 0.0 ? damping * quadratic.h(k, k) : 1.0;
-        quadratic.c = gradient - quadratic.h * candidate.packed;
-        const auto count = static_cast<std::size_t>(gradient.size());
-        std::vector<bool> free(count);
-        for (std::size_t k = 0; k < count; ++k)
-            free[k] = candidate.packed(static_cast<Index>(k)) > 0.0;
-        const auto end = minimise_quadratic(quadratic, std::vector<bool>(count, true), free);
-        if (!end)
-            return;
-        const Vector step = *end - candidate.packed;
-        const double gain = -gradient.dot(step) - 0.5 * step.dot(quadratic.h * step);
-        if (gain > unnoticed)
-            return;
-        candidate.trace.converged = true;
-        candidate.trace.stop_reason =
-            fmt::format("no step lowers the cost by more than {:.1e}", std::max(gain, 0.0));
-    }
-
-    void judge(Candidate& candidate) const {
-        judge_convergence(candidate);
-        const DyeModel& model = *candidate.model;
-        const Index data = prepared_.problem.used_count();
-        DyeEvidence& evidence = candidate.evidence;
-        evidence.dyes = model.dyes();
-        evidence.chi_squared = model.chi_squared(candidate.packed);
-        // of an emission one number is its unit
-        evidence.parameters =
-            static_cast<int>((candidate.packed.array() > 0.0).count()) - model.dyes();
-        evidence.criterion =
-            information_criterion(evidence.chi_squared, evidence.parameters, data,
-                                  is_estimated_ ? Evidence::EstimatedNoise : Evidence::KnownNoise);
-        evidence.converged = candidate.trace.converged;
-    }
-
-    const DyeFitSettings& settings_;
-    Clock::time_point begin_;
-    PreparedDyes prepared_;
-    bool is_estimated_ = false;
-};
-
-void take_dyes(const Candidate& candidate, const DyeErrors& errors, DyeFitResult& result) {
+void take_dyes(const DyeCandidate& candidate, const DyeErrors& errors, DyeFitResult& result) {
     const DyeProblem& problem = candidate.model->problem();
     const DyeParameters at = candidate.model->parameters(candidate.packed);
     const double step = problem.bands.step_nm, factor = problem.largest_factor();
@@ -239,7 +48,7 @@ void take_dyes(const Candidate& candidate, const DyeErrors& errors, DyeFitResult
 }
 
 /// What the dyes of the first set's layer absorb of light at right angles, and send out of it.
-ReradiationMatrix own_matrix(const Candidate& candidate, const DyeDataSet& set) {
+ReradiationMatrix own_matrix(const DyeCandidate& candidate, const DyeDataSet& set) {
     const DyeProblem& problem = candidate.model->problem();
     const DyeParameters at = candidate.model->parameters(candidate.packed);
     const Matrix depth = problem.samples.front().depth_factor * at.absorption;
@@ -261,7 +70,7 @@ ReradiationMatrix own_matrix(const Candidate& candidate, const DyeDataSet& set) 
     return matrix;
 }
 
-void measure_errors(const Candidate& candidate, const PreparedDyes& prepared,
+void measure_errors(const DyeCandidate& candidate, const PreparedDyes& prepared,
                     DyeFitResult& result) {
     double squares = 0.0, seen = 0.0, shifted_squares = 0.0, shifted_signal = 0.0;
     const auto images = candidate.model->images(candidate.packed);
@@ -296,7 +105,7 @@ void measure_errors(const Candidate& candidate, const PreparedDyes& prepared,
 }
 
 /// The yield by the inner-filter correction, with the depth of all dyes that was fitted.
-double yield_by_inner_filter(const Candidate& candidate, const PreparedDyes& prepared,
+double yield_by_inner_filter(const DyeCandidate& candidate, const PreparedDyes& prepared,
                              const DyeFitSettings& settings) {
     const DyeProblem& problem = prepared.problem;
     const Vector depth = problem.samples.front().depth_factor *
@@ -328,7 +137,7 @@ void note_what_is_open(const DyeFitResult& result, const DyeFitSettings& setting
     }
 }
 
-void judge_residuals(const Candidate& candidate, double freedom, DyeFitResult& result) {
+void judge_residuals(const DyeCandidate& candidate, double freedom, DyeFitResult& result) {
     result.reduced_chi_squared = candidate.evidence.chi_squared / freedom;
     if (!candidate.trace.converged)
         result.failure = "the fit did not converge: " + candidate.trace.stop_reason;
@@ -342,9 +151,9 @@ void judge_residuals(const Candidate& candidate, double freedom, DyeFitResult& r
 } // namespace
 
 DyeFitResult fit_dyes(const std::vector<BispectralData>& data, const DyeFitSettings& settings) {
-    DyeFit fit(data, settings);
+    DyeSearch fit(data, settings);
     DyeFitResult result;
-    const Candidate candidate = fit.best(result.evidence);
+    const DyeCandidate candidate = fit.best(result.evidence);
     const PreparedDyes& prepared = fit.prepared();
     for (Index dye = 0; dye < candidate.model->dyes(); ++dye) // what is held at 1 is uncertain, too
         candidate.model->release(candidate.model->places().quantum_yield + dye);

@@ -1,4 +1,4 @@
-#include "reradiant/dye_fit.h"
+#include "host/fit/dye/dye_fit.h"
 
 #include "host/fit/data/measurement_reader.h"
 #include "host/spectral/evidence/plausible_matrix.h"

@@ -1,4 +1,4 @@
-#include "host/fit/dye/dye_summary.h"
+#include "host/fit/dye/result/dye_summary.h"
 
 #include <fmt/format.h>
 

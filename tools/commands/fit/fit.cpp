@@ -11,7 +11,7 @@
 #include "reradiant/error.h"
 #include "reradiant/scene_file.h"
 #include "reradiant/spectral_files.h"
-#include "tools/commands/fit_dyes.h"
+#include "tools/commands/fit/fit_dyes.h"
 #include "tools/program/command.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/kept_work.h"

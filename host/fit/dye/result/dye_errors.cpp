@@ -1,4 +1,4 @@
-#include "host/fit/dye/dye_errors.h"
+#include "host/fit/dye/result/dye_errors.h"
 
 #include <algorithm>
 #include <chrono>

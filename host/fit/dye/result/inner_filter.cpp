@@ -1,4 +1,4 @@
-#include "host/fit/dye/inner_filter.h"
+#include "host/fit/dye/result/inner_filter.h"
 
 #include "host/layers/smooth/smooth_stack.h"
 

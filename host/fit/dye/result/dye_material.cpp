@@ -1,4 +1,4 @@
-#include "reradiant/dye_fit.h"
+#include "host/fit/dye/dye_fit.h"
 
 #include "host/base/atomic_file.h"
 #include "host/scene/toml/scene_table.h"

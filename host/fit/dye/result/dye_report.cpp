@@ -1,7 +1,7 @@
-#include "host/fit/dye/dye_report.h"
+#include "host/fit/dye/result/dye_report.h"
 
 #include "host/base/atomic_file.h"
-#include "host/fit/dye/dye_summary.h"
+#include "host/fit/dye/result/dye_summary.h"
 #include "host/report/html.h"
 #include "host/report/svg.h"
 
