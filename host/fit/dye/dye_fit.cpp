@@ -112,7 +112,13 @@ double yield_by_inner_filter(const DyeCandidate& candidate, const PreparedDyes& 
                          candidate.model->parameters(candidate.packed).absorption.rowwise().sum();
     const auto filter =
         inner_filter(settings.material.stack, prepared.sets.front().views.front(), depth, problem);
-    if (!filter || problem.fits_scale)
+    const Substrate& ground = settings.material.substrate;
+    constexpr double dark = 0.05;
+    const bool has_dark_ground =
+        settings.material.stack.is_sheet() ||
+        (!settings.fits_substrate && !ground.is_fluorescent() &&
+         ground.reflectance.maximum(problem.bands.lower_edge_nm(0), problem.bands.to_nm()) <= dark);
+    if (!filter || problem.fits_scale || !has_dark_ground)
         return std::numeric_limits<double>::quiet_NaN();
     return corrected_dye(*filter, prepared.sets.front().blocks.front(), problem).quantum_yield;
 }

@@ -74,7 +74,7 @@ struct DyeFitResult {
     Eigen::VectorXd reflectance, reflectance_sigma; ///< of a fitted substrate, else empty
     std::vector<DyeEvidence> evidence;              ///< one a number of dyes that was tried
     /// Yield of all dyes together by the inner-filter correction, which leaves out what is
-    /// re-absorbed and sent out again; NaN for geometries and units it does not know.
+    /// re-absorbed and sent out again; NaN for geometries, units and grounds it does not know.
     double inner_filter_yield = 0.0;
     ReradiationMatrix matrix; ///< of the dyes by themselves, see fit_dyes
     double spacing_nm = 0.0;
