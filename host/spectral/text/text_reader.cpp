@@ -17,9 +17,9 @@ constexpr double largest_wavelength_nm = 1e6;
 constexpr std::string_view blanks = " \t\r\f\v";
 /// These words stand for a value that is missing, as pandas, R, spreadsheets, numpy's masked arrays
 /// and instruments write it.
-constexpr std::array<std::string_view, 22> gap_words{
-    "",     "nan", "+nan", "-nan", "na",  "n/a", "#n/a",    "#na",    "<na>", "null", "inf",
-    "none", "nil", "-",    "--",   "---", ".",   "missing", "masked", "nd",   "n.d.", "+inf"};
+constexpr std::array<std::string_view, 20> gap_words{
+    "",     "nan", "+nan", "-nan", "na",  "n/a", "#n/a",    "#na",    "<na>", "null",
+    "none", "nil", "-",    "--",   "---", ".",   "missing", "masked", "nd",   "n.d."};
 
 /// from_chars takes no leading plus.
 std::string_view without_plus(std::string_view text) {
