@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace reradiant {
@@ -17,6 +18,13 @@ struct SynthInstrument {
     double excitation_fwhm_nm = 0.0, emission_fwhm_nm = 0.0;
     /// Share of the reflected light that each of the two emission bands beside the diagonal sees.
     double spill = 0.0;
+    /// Share of the reflected light that is seen at twice its wavelength, too.
+    double second_order = 0.0;
+    /// Spectrum of the lamp that data are not corrected for (relative, mean 1 over the excitation
+    /// bands); and what a radiance factor of 1 reads.
+    std::optional<Spectrum> lamp = {};
+    double scale = 1.0;
+    std::optional<double> ceiling = {}; ///< largest reading
 };
 
 /// Standard deviations of one entry of signal s, where `peak` is the largest fluorescent entry of
@@ -54,7 +62,8 @@ ReradiationMatrix synth_truth(const SynthRecipe& recipe);
 /// grid but must be (a stack without bandpasses), and when the bandpasses need too fine a grid.
 std::vector<Eigen::MatrixXd> synth_noise_free(const SynthRecipe& recipe);
 
-/// Adds the reflected light that emission bands beside the diagonal see.
+/// Adds the reflected light that emission bands beside the diagonal see, and that of the second
+/// order.
 void add_spill(const SynthRecipe& recipe, Eigen::MatrixXd& values);
 
 struct SynthResult {

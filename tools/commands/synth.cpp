@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 namespace reradiant {
@@ -22,6 +23,7 @@ using Json = nlohmann::ordered_json;
 
 struct SynthOptions {
     fs::path recipe, output, truth;
+    std::optional<double> thickness;
 };
 
 /// Errors of meaning have no place of their own: they are placed at the recipe.
@@ -67,6 +69,19 @@ void print_what_truth_leaves_out(const SynthRecipe& recipe) {
                    dyed_layers(recipe));
 }
 
+/// The recipe, with another thickness of its first dyed layer where one is asked for.
+SynthRecipe recipe_of(const SynthOptions& options) {
+    SynthRecipe recipe = read_synth_recipe(options.recipe);
+    if (!options.thickness)
+        return recipe;
+    const auto dyed = std::ranges::find_if(recipe.stack.layers, &Layer::is_dyed);
+    if (dyed == recipe.stack.layers.end())
+        throw_input_error({options.recipe.string()}, "--thickness is of a dyed layer, and none is",
+                          "give the layer fluorophores, or leave --thickness out");
+    dyed->thickness = *options.thickness;
+    return recipe;
+}
+
 int run_synth(const SynthOptions& options, const CommonOptions& common) {
     const std::vector<NamedOutput> outputs = {
         {"-o",
@@ -76,7 +91,7 @@ int run_synth(const SynthOptions& options, const CommonOptions& common) {
          "`reradiant convert` makes other formats of a bare matrix"},
         {"--truth", options.truth, {".csv", ".exr", ".bfc"}, true}};
     check_outputs(common, outputs, {options.recipe});
-    const SynthRecipe recipe = read_synth_recipe(options.recipe);
+    const SynthRecipe recipe = recipe_of(options);
     check_outputs(common, outputs, named_files());
     const SynthResult result = synthesise_file(recipe, options.recipe, common.seed);
     const ReradiationMatrix truth = synth_truth(recipe);
@@ -113,6 +128,10 @@ void add_synth_command(Program& program, CommandContext& context) {
         .required();
     command.option("--truth", options->truth,
                    "write the substrate's matrix without noise (.csv, .exr, .bfc)");
+    command
+        .option("--thickness", options->thickness,
+                "of the first dyed layer, instead of the recipe's: one of a series of samples")
+        .positive();
     command.footer("Examples:\n"
                    "  reradiant synth tools/examples/synth-orange.toml -o ~/orange.csv --seed 7\n"
                    "  reradiant synth tools/examples/synth-varnished.toml -o ~/data.csv "

@@ -87,12 +87,18 @@ Eigen::Index BispectralData::measured_count() const {
     return count;
 }
 
-BispectralData read_bispectral_data(const std::filesystem::path& file, const TableForm& form) {
+BispectralData read_unjudged_data(const std::filesystem::path& file, const TableForm& form,
+                                  MeasuredLight light) {
     const bool is_measurement = form == TableForm{} && is_table(file) && is_measurement_csv(file);
     BispectralData data = is_measurement
-                              ? read_measurement_blocks(file)
+                              ? read_measurement_blocks(file, light)
                               : from_matrix(read_reradiation(file, Gaps::BecomeNan, form));
     data.file = file;
+    return data;
+}
+
+BispectralData read_bispectral_data(const std::filesystem::path& file, const TableForm& form) {
+    BispectralData data = read_unjudged_data(file, form, MeasuredLight::OfSubstrate);
     refuse_impossible_units(data);
     const BispectralBlock& first = data.blocks.front(); // all have the file's axes and quantity
     warn_of_matrix(file.string(), {data.emission, data.excitation, first.value,

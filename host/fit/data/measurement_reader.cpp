@@ -24,6 +24,7 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 struct Row {
     PlacedWavelength emission, excitation;
     double value, sigma;
+    bool is_of_slab = false;
 };
 using Directions = std::tuple<double, double, double>; // theta_i, theta_o, phi in degrees
 using RowsByDirections = std::map<Directions, std::vector<Row>>;
@@ -93,19 +94,23 @@ bool is_of_slab(const TextReader& reader, const std::vector<TextToken>& tokens) 
     return true;
 }
 
-void read_row(const TextReader& reader, std::vector<TextToken> tokens, RowsByDirections& rows) {
+void read_row(const TextReader& reader, std::vector<TextToken> tokens, MeasuredLight light,
+              RowsByDirections& rows) {
     drop_padding(tokens, column_count);
     if (tokens.size() != column_count)
         throw_input_error(reader.position(tokens.back()),
                           fmt::format("{} values in this line", tokens.size()),
                           fmt::format("write {}", headings));
-    if (tokens[7].text == "specular" || is_of_slab(reader, tokens))
+    const bool takes_all = light == MeasuredLight::OfAll;
+    const bool is_slab = tokens[7].text == "slab";
+    if (tokens[7].text == "specular" || (!takes_all && is_of_slab(reader, tokens)))
         return;
-    if (tokens[7].text != "diffuse")
+    if (tokens[7].text != "diffuse" && !is_slab)
         throw_input_error(reader.position(tokens[7]),
                           fmt::format("'{}' is not a part", tokens[7].text),
                           "write diffuse, slab or specular");
-    const Directions at{angle(reader, tokens[0], 90.0), angle(reader, tokens[1], 90.0),
+    const Directions at{angle(reader, tokens[0], 90.0),
+                        angle(reader, tokens[1], takes_all ? 180.0 : 90.0),
                         angle(reader, tokens[2], 360.0)};
     const auto number = [&](const TextToken& token) {
         return is_gap(token.text) ? nan_value : reader.number(token);
@@ -117,7 +122,7 @@ void read_row(const TextReader& reader, std::vector<TextToken> tokens, RowsByDir
     const double sigma = number(tokens[6]);
     rows[at].push_back({wavelength(tokens[4]), wavelength(tokens[3]),
                         std::numbers::pi * number(tokens[5]),
-                        sigma > 0.0 ? std::numbers::pi * sigma : nan_value});
+                        sigma > 0.0 ? std::numbers::pi * sigma : nan_value, is_slab});
 }
 
 /// The wavelengths that occur, each with its first place.
@@ -139,24 +144,26 @@ BispectralBlock block_of(const Directions& at, const std::vector<Row>& rows,
     block.geometry = {std::get<0>(at), std::get<1>(at), std::get<2>(at)};
     block.value = Eigen::MatrixXd::Constant(data.emission.count, data.excitation.count, nan_value);
     block.sigma = block.value;
-    Eigen::MatrixXi seen = Eigen::MatrixXi::Zero(block.value.rows(), block.value.cols());
+    Eigen::MatrixXi seen[2]; // of the substrate, of slabs
+    seen[0] = seen[1] = Eigen::MatrixXi::Zero(block.value.rows(), block.value.cols());
     for (const Row& row : rows) {
         const int o = data.emission.band_of(row.emission.nm);
         const int i = data.excitation.band_of(row.excitation.nm);
-        if (seen(o, i)++ > 0)
+        if (seen[row.is_of_slab ? 1 : 0](o, i)++ > 0)
             throw_input_error(row.excitation.position,
                               fmt::format("excitation {} nm, emission {} nm is given twice",
                                           row.excitation.nm, row.emission.nm),
                               "keep one of the two lines");
-        block.value(o, i) = row.value;
-        block.sigma(o, i) = row.sigma;
+        const bool is_second = seen[0](o, i) + seen[1](o, i) > 1;
+        block.value(o, i) = row.value + (is_second ? block.value(o, i) : 0.0);
+        block.sigma(o, i) = is_second ? std::hypot(row.sigma, block.sigma(o, i)) : row.sigma;
     }
     return block;
 }
 
 } // namespace
 
-BispectralData read_measurement_blocks(const std::filesystem::path& file) {
+BispectralData read_measurement_blocks(const std::filesystem::path& file, MeasuredLight light) {
     TextReader reader(file);
     BispectralData data;
     RowsByDirections rows;
@@ -169,7 +176,7 @@ BispectralData read_measurement_blocks(const std::filesystem::path& file) {
         else if (!is_line_of_cells(line))
             continue;
         else if (past_headings)
-            read_row(reader, std::move(cells), rows);
+            read_row(reader, std::move(cells), light, rows);
         else if (joined(cells) == headings)
             past_headings = true;
         else

@@ -111,15 +111,6 @@ void share_errors(const Matrix& entries, const Matrix& weights, const Matrix& be
     covariance.root << of_data.topRows(parameters), of_others;
 }
 
-std::vector<bool> firmly_at_zero(const TermModel& model, const Vector& parameters,
-                                 const Vector& gradient, const Matrix& jacobian) {
-    std::vector<bool> held;
-    for (Eigen::Index k = 0; k < parameters.size(); ++k)
-        held.push_back(!model.may_be_negative(k) && parameters(k) <= 0.0 &&
-                       gradient(k) > held_beyond * jacobian.col(k).norm());
-    return held;
-}
-
 /// Columns of a Jacobian that are not held and not zero.
 struct FreeColumns {
     std::vector<Eigen::Index> free;
@@ -215,6 +206,15 @@ Vector stacked(const FactorCurves& curves, const FitTarget& target) {
 }
 
 } // namespace
+
+std::vector<bool> firmly_at_zero(const NonNegativeModel& model, const Vector& parameters,
+                                 const Vector& gradient, const Matrix& jacobian) {
+    std::vector<bool> held;
+    for (Eigen::Index k = 0; k < parameters.size(); ++k)
+        held.push_back(!model.may_be_negative(k) && parameters(k) <= 0.0 &&
+                       gradient(k) > held_beyond * jacobian.col(k).norm());
+    return held;
+}
 
 Vector Covariance::sigma(const Matrix& jacobian) const {
     return (jacobian * root).rowwise().norm();

@@ -31,6 +31,11 @@ struct Covariance {
 Covariance covariance_of(const Eigen::MatrixXd& jacobian, const std::vector<bool>& held,
                          double variance);
 
+/// Parameters at zero that the data push against zero by more than two standard errors. gradient:
+/// of half the square sum; jacobian: (residuals, parameters), weighted.
+std::vector<bool> firmly_at_zero(const NonNegativeModel& model, const Eigen::VectorXd& parameters,
+                                 const Eigen::VectorXd& gradient, const Eigen::MatrixXd& jacobian);
+
 /// Covariance of a model at its optimum. Parameters at zero that the data push against zero by more
 /// than two standard errors are held; those that are there by chance are not, so that their error
 /// bands are not empty. Active photon balances count as data, priors as they are: what the data do

@@ -66,6 +66,26 @@ double fluorescent_peak(const SynthRecipe& recipe, const std::vector<Eigen::Matr
     return peak;
 }
 
+/// What falls on the sample of a lamp that data are not corrected for.
+Eigen::VectorXd lamp_of(const SynthRecipe& recipe) {
+    Eigen::VectorXd lamp = Eigen::VectorXd::Ones(recipe.excitation.count);
+    if (!recipe.instrument.lamp)
+        return lamp;
+    for (int i = 0; i < recipe.excitation.count; ++i)
+        lamp(i) = (*recipe.instrument.lamp)(recipe.excitation.centre_nm(i));
+    if (!(lamp.mean() > 0.0))
+        throw std::invalid_argument("the lamp gives no light in the excitation bands");
+    return lamp / lamp.mean();
+}
+
+/// Brings readings to the instrument's unit, in which it is full at some value.
+void read_in_unit(const SynthInstrument& instrument, BispectralBlock& block) {
+    block.value *= instrument.scale;
+    block.sigma *= instrument.scale;
+    if (instrument.ceiling)
+        block.value = block.value.cwiseMin(*instrument.ceiling);
+}
+
 BispectralBlock noisy_block(const Eigen::MatrixXd& seen, Noise& noise) {
     BispectralBlock block;
     block.value = block.sigma = seen;
@@ -81,6 +101,8 @@ BispectralBlock noisy_block(const Eigen::MatrixXd& seen, Noise& noise) {
 
 SynthResult synthesise(const SynthRecipe& recipe, unsigned seed) {
     std::vector<Eigen::MatrixXd> seen = synth_noise_free(recipe);
+    for (Eigen::MatrixXd& values : seen)
+        values *= lamp_of(recipe).asDiagonal();
     SynthResult result;
     result.peak = fluorescent_peak(recipe, seen);
     if (!(result.peak > 0.0))
@@ -101,6 +123,8 @@ SynthResult synthesise(const SynthRecipe& recipe, unsigned seed) {
         count += 1.0;
     });
     result.noise_rms = count > 0.0 ? std::sqrt(squares / count) : 0.0;
+    for (BispectralBlock& block : result.data.blocks)
+        read_in_unit(recipe.instrument, block);
     return result;
 }
 

@@ -191,6 +191,9 @@ void add_spill(const SynthRecipe& recipe, Eigen::MatrixXd& values) {
         for (const int beside : {o - 1, o + 1})
             if (beside >= 0 && beside < recipe.emission.count)
                 values(beside, i) += recipe.instrument.spill * shape.values(o, i);
+        const int twice = recipe.emission.band_of(2.0 * recipe.excitation.centre_nm(i));
+        if (twice >= 0)
+            values(twice, i) += recipe.instrument.second_order * shape.values(o, i);
     }
 }
 

@@ -251,14 +251,23 @@ void read_geometries(const TableReader& root, SynthRecipe& recipe) {
                 recipe.geometries.push_back({theta_i, theta_o, phi});
 }
 
-void read_instrument(const TableReader& root, SynthRecipe& recipe) {
+void read_instrument(const TableReader& root, SynthRecipe& recipe, LoadState& state) {
     if (root.has("instrument")) {
         const TableReader reader =
-            root.table("instrument", {"excitation_fwhm_nm", "emission_fwhm_nm", "spill"});
+            root.table("instrument", {"excitation_fwhm_nm", "emission_fwhm_nm", "spill",
+                                      "second_order", "lamp", "scale", "ceiling"});
         const NumberRange fwhm = NumberRange::within(0.0, 100.0);
         recipe.instrument = {reader.number_or("excitation_fwhm_nm", 0.0, fwhm),
                              reader.number_or("emission_fwhm_nm", 0.0, fwhm),
-                             reader.number_or("spill", 0.0, NumberRange::within(0.0, 1.0))};
+                             reader.number_or("spill", 0.0, NumberRange::within(0.0, 1.0)),
+                             reader.number_or("second_order", 0.0, NumberRange::within(0.0, 1.0))};
+        const NumberRange unit{.low = 0.0, .high = 1e12, .low_is_allowed = false};
+        recipe.instrument.scale = reader.number_or("scale", 1.0, unit);
+        if (reader.has("ceiling"))
+            recipe.instrument.ceiling = reader.number("ceiling", unit);
+        if (reader.has("lamp"))
+            recipe.instrument.lamp =
+                read_spectrum_key(reader, "lamp", SpectrumLimits::emission(), state);
     }
     if (root.has("noise")) {
         const TableReader reader =
@@ -297,7 +306,7 @@ SynthRecipe synth_recipe_from_table(const toml::table& table, const std::filesys
                   fmt::format("give 1 to {} [[fluorophore]], or fluorophores in a layer",
                               most_fluorophores));
     read_geometries(root, recipe);
-    read_instrument(root, recipe);
+    read_instrument(root, recipe, state);
     state.warn_outside(std::min(recipe.emission.from_nm, recipe.excitation.from_nm),
                        std::max(recipe.emission.to_nm(), recipe.excitation.to_nm()));
     return recipe;

@@ -37,14 +37,14 @@ std::vector<double> depths_of_dyed(const DyedStack& stack) {
     return depths;
 }
 
-StackCells cells_of(const DyedStack& stack, int cells_per_octave) {
+} // namespace
+
+StackCells stack_cells(const DyedStack& stack, int cells_per_octave) {
     StackCells cells;
     for (const double depth : depths_of_dyed(stack))
         cells.push_back(depth > 0.0 ? depth_cells(depth, cells_per_octave) : DepthCells{});
     return cells;
 }
-
-} // namespace
 
 EmittingStack::EmittingStack(DyedStack stack) : stack_(std::move(stack)) {
     constexpr int most_cells_per_octave = 32;
@@ -66,7 +66,7 @@ EmittingStack::EmittingStack(DyedStack stack, int cells_per_octave) : stack_(std
 }
 
 EmittingStack::Level EmittingStack::make_level(int cells_per_octave) const {
-    Level level{cells_of(stack_, cells_per_octave), {}, {}, nullptr, nullptr};
+    Level level{stack_cells(stack_, cells_per_octave), {}, {}, nullptr, nullptr};
     level.by_band.resize(stack_.by_band.size());
     const auto like_the_last = [&](std::size_t band) {
         return band > 0 && stack_.by_band[band] == stack_.by_band[band - 1];

@@ -41,6 +41,10 @@ struct DyedStack {
     Eigen::MatrixXd substrate;          ///< (bands, bands), rows = emission; empty for a sheet
 };
 
+/// Returns the depth cells of every slab: thin enough at the largest depth of all bands, none for
+/// one without dyes.
+StackCells stack_cells(const DyedStack& stack, int cells_per_octave);
+
 /// Light that a stack with dyes sends out again: from the dyes in its slabs, from its substrate,
 /// and from one to the other and back, to all orders.
 ///

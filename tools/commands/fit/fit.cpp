@@ -11,6 +11,7 @@
 #include "reradiant/error.h"
 #include "reradiant/scene_file.h"
 #include "reradiant/spectral_files.h"
+#include "tools/commands/fit/fit_dyes.h"
 #include "tools/program/command.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/kept_work.h"
@@ -32,12 +33,14 @@ namespace {
 constexpr int exit_not_within_noise = 3;
 
 struct FitOptions {
+    std::vector<std::filesystem::path> all_data;
     std::filesystem::path data, output, stack, report, model_file, covariance;
     std::string model = "factors", loss = "none", mask = "auto";
     std::optional<int> rank;
     std::optional<double> smooth_nm, spill_nm;
     std::optional<std::size_t> bytes;
     std::vector<std::string> unknown;
+    DyeOptions dye;
     bool anti_stokes = false;
     double seconds = 60.0;
     std::uint64_t memory_limit_bytes = 0;
@@ -62,7 +65,7 @@ FitSettings settings_of(const FitOptions& options, const CommonOptions& common) 
     settings.solver.most_seconds = options.seconds;
     settings.solver.most_iterations = options.iterations;
     settings.threads = common.threads;
-    if (!options.stack.empty())
+    if (!options.stack.empty() && options.dye.layer.empty())
         settings.stack = load_stack(options.stack);
     return settings;
 }
@@ -172,14 +175,43 @@ std::optional<FitResult> fit_and_keep(const FitOptions& options, FitSettings set
     }
 }
 
-int run_fit(const FitOptions& options, const CommonOptions& common) {
+/// Refuses what only belongs to the one or the other kind of fit.
+void check_kind(const FitOptions& options) {
+    if (const std::string option = options.dye.given_without_layer(); !option.empty())
+        throw_input_error({}, option + " is for dyes in a layer", "add --dye LAYER");
+    if (options.dye.layer.empty()) {
+        if (options.all_data.size() > 1)
+            throw_input_error({options.all_data[1].string()},
+                              "several data sets are fitted together for dyes in a layer alone",
+                              "fit them one by one, or add --dye LAYER");
+        return;
+    }
+    const bool has_other = !options.covariance.empty() || options.bytes || options.resume ||
+                           options.model != "factors" || options.loss != "none";
+    if (has_other)
+        throw_input_error({},
+                          "--covariance, --bytes, --resume, --model and --loss are not for fits of "
+                          "dyes in a layer",
+                          "leave them out, or leave --dye out");
+}
+
+int run_fit(FitOptions options, const CommonOptions& common) {
+    check_kind(options);
+    options.data = options.all_data.front();
     const std::vector<NamedOutput> outputs = {
         {"-o", options.output, {".csv", ".exr", ".bfc"}, true},
         {"--report", options.report, {".html"}},
         {"--model-file", options.model_file, {".toml"}},
         {"--covariance", options.covariance, {".csv"}}};
-    check_outputs(common, outputs, {options.data, options.stack});
+    std::vector<std::filesystem::path> inputs = options.all_data;
+    inputs.insert(inputs.end(), {options.stack, options.dye.lamp});
+    check_outputs(common, outputs, inputs);
     const FitSettings settings = settings_of(options, common);
+    if (!options.dye.layer.empty())
+        return run_dye_fit(
+            options.dye,
+            {options.all_data, options.stack, options.output, options.report, options.model_file},
+            settings, common);
     check_outputs(common, outputs, named_files());
     const BispectralData data = read_bispectral_data(options.data);
     check_fit_memory(data, settings, options.memory_limit_bytes);
@@ -221,7 +253,9 @@ void add_fit_command(Program& program, CommandContext& context) {
     auto options = std::make_shared<FitOptions>();
     Command command = program.add_command(
         "fit", "Fits a re-radiation matrix to bispectral data, bare or through a layer");
-    command.option("DATA", options->data, "re-radiation CSV, CSV of `measure`, .BFC or .exr")
+    command
+        .option("DATA", options->all_data,
+                "re-radiation CSV, CSV of `measure`, .BFC or .exr; several with --dye")
         .required();
     command.option("-o,--output", options->output, "re-radiation matrix to write").required();
     command.option("--model", options->model, "factors, gaussians or matrix").show_default();
@@ -259,6 +293,7 @@ void add_fit_command(Program& program, CommandContext& context) {
         .option("--unknown", options->unknown,
                 "numbers of the stack that are fitted, too: thickness,absorption,ior")
         .delimiter(',');
+    add_dye_options(command, options->dye);
     command.flag("--anti-stokes", options->anti_stokes,
                  "emission below the excitation is possible");
     command.option("--report", options->report, "HTML report to write");
