@@ -32,7 +32,7 @@ integrator = { max_depth = 8, min_depth = 3 }
 constexpr const char* samples[] = {
     R"(
 light = [
-  { type = "rectangle", center = [0, 5, 0], edge_u = [1, 0, 0], edge_v = [0, 0, 1], radiance = { nm = [400, 700], value = [1, 2] } },
+  { type = "rectangle", group = "day", center = [0, 5, 0], edge_u = [1, 0, 0], edge_v = [0, 0, 1], radiance = { nm = [400, 700], value = [1, 2] } },
   { type = "sphere", center = [0, 5, 0], radius = 1, radiance = { illuminant = "D65", scale = 1 } },
   { type = "point", position = [0, 5, 0], intensity = { blackbody_kelvin = 3000, scale = 1 } },
   { type = "directional", direction = [0, -1, 0], angle_deg = 1, irradiance = { line_nm = 405, width_nm = 2, scale = 1 } },

@@ -30,6 +30,7 @@ const std::map<std::string, std::string> texts{
     {"edge_v", "full edge; a rectangle faces, and emits towards, cross(edge_u, edge_v)"},
     {"radius", "length"},
     {"[[light]]/target", "the point that it faces, instead of edges, normal or direction"},
+    {"group", "lights of one name are a layer of `render --light-groups`"},
     {"size", "lengths of edge_u, which is level, and edge_v, with target"},
     {"cone_deg", "half angle of the cone that it lights"},
     {"falloff_deg", "how far within the cone its light begins to fall, smoothly"},
