@@ -2,17 +2,14 @@
 
 #include "host/base/memory_limit.h"
 #include "host/device/opencl_device.h"
+#include "host/render/plan/material_plans.h"
 #include "host/render/tables/hero_tables.h"
 #include "kernels/core/features.h"
 #include "reradiant/error.h"
 
 #include <fmt/core.h>
 
-#include <tbb/parallel_pipeline.h>
-
 #include <algorithm>
-#include <atomic>
-#include <exception>
 
 namespace reradiant {
 
@@ -93,7 +90,7 @@ public:
         plan_.film.independent_samples = plan_.sequence_blocks == 0;
         plan_.film.begins_odd = options_.first_sample % 2 == 1;
         plan_.lights = plan_lights(scene_, plan_.wavelengths, options_.light_groups);
-        plan_materials();
+        plan_materials(scene_, plan_.wavelengths, plan_.materials);
         plan_.features = features(plan_.lights.features);
         find_passed_sheets();
         count_paths();
@@ -121,38 +118,6 @@ private:
             plan_.notes.push_back(model_note(material, chosen.choice));
             plan_.materials.push_back(std::move(chosen));
         }
-    }
-
-    /// Plans materials on all cores, each into its own place; refuses the first that is refused.
-    /// What some materials are analysed with takes 100 MB, so that they are not begun all at once.
-    void plan_materials() {
-        constexpr std::size_t most_at_once = 8;
-        const std::size_t count = scene_.materials.size();
-        std::vector<std::exception_ptr> refusals(count);
-        std::atomic<bool> refused = false;
-        std::size_t begun = 0;
-        const auto next = [&](tbb::flow_control& control) {
-            if (begun < count && !refused)
-                return begun++;
-            control.stop();
-            return count;
-        };
-        const auto plan_one = [&](std::size_t i) {
-            try {
-                plan_.materials[i] = plan_material(scene_.materials[i], plan_.materials[i].choice,
-                                                   plan_.wavelengths);
-            } catch (...) {
-                refusals[i] = std::current_exception();
-                refused = true;
-            }
-        };
-        tbb::parallel_pipeline(
-            most_at_once,
-            tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, next) &
-                tbb::make_filter<std::size_t, void>(tbb::filter_mode::parallel, plan_one));
-        for (const std::exception_ptr& refusal : refusals)
-            if (refusal)
-                std::rethrow_exception(refusal);
     }
 
     /// Shadow rays pass smooth sheets whose material does not hang on a texture's chance.
