@@ -212,12 +212,15 @@ private:
 std::vector<DyedStack> dyed_stacks(const Material& material, const SubstrateOnCells& on_cells,
                                    const WavelengthPlan& plan) {
     std::vector<DyedStack> by_phase(static_cast<std::size_t>(plan.phases));
+    for (const Layer& layer : material.stack.layers) {
+        const std::vector<Eigen::MatrixXd> dyes = dyes_on_lanes(layer, plan);
+        for (std::size_t phase = 0; phase < dyes.size(); ++phase)
+            by_phase[phase].slabs.push_back(dyes[phase]);
+    }
     for (int phase = 0; phase < plan.phases; ++phase) {
         DyedStack& stack = by_phase[static_cast<std::size_t>(phase)];
         for (int lane = 0; lane < static_cast<int>(plan.lanes.size()); ++lane)
             stack.by_band.push_back(material_at(material, plan.wavelength_nm(lane, phase)));
-        for (const Layer& layer : material.stack.layers)
-            stack.slabs.push_back(dyes_on_lanes(layer, plan, phase));
         if (!material.stack.is_sheet())
             stack.substrate = substrate_on_lanes(material.substrate, on_cells, plan, phase);
     }
