@@ -94,7 +94,7 @@ protected:
 
 } // namespace
 
-TEST_F(DyedCache, KeptOperatorsAreTheComputedOnesToTheBit) {
+TEST_F(DyedCache, Case43KeptOperatorsAreTheComputedOnesToTheBit) {
     for (const Material& own : {material({dyed_layer(1.0)}, 0.5), sheet_of(dyed_layer(1.0))}) {
         const std::size_t before = kept_files().size();
         const DyedOperator computed = operator_of(own);
