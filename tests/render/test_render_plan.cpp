@@ -202,5 +202,27 @@ TEST(RenderPlan, BlackEnvironmentsNeedNothing) {
     EXPECT_EQ(plan.counts.colours, 0u);
 }
 
+TEST(RenderPlan, OfSeveralRefusedMaterialsTheFirstIsNamed) {
+    Layer dyed = layer(1.5);
+    dyed.dyes = {
+        {Spectrum::constant(1.0), 1.0, Spectrum::gaussian(600.0, 20.0, 1.0), 0.5, nullptr}};
+    std::vector<Material> materials(40, over_grey({layer(1.5)}));
+    for (std::size_t i = 10; i < materials.size(); ++i)
+        materials[i] = over_grey({dyed});
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        materials[i].name = std::to_string(i);
+    Planned refused = planned(materials, Model::Adding);
+    refused.options.wavelengths.hero_count = 4;
+    for (int run = 0; run < 20; ++run) {
+        try {
+            plan_render(refused.scene, device().info(), refused.options);
+            ADD_FAILURE() << "dyes do not go with hero wavelengths";
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("material '10'"), std::string::npos)
+                << error.what();
+        }
+    }
+}
+
 } // namespace
 } // namespace reradiant

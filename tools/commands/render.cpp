@@ -26,6 +26,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -42,6 +43,7 @@ struct RenderCommand {
     std::string model = "auto", wavelengths = "comb", bands, variance, sample_range,
                 phase = "random";
     bool samples_given = false;
+    std::chrono::steady_clock::time_point begun; ///< of the command, from where --time counts
     std::size_t outside = 0; ///< pixels outside the display's gamut, once it is written
 
     bool shows_a_display() const {
@@ -153,14 +155,16 @@ RenderResult render_image(const RenderCommand& command, const CommonOptions& com
                 preview.update(image());
         };
     // from its first pass on a render ends with a pass and a checkpoint
-    const RenderHooks hooks{.on_set_up = catch_interrupts};
+    const RenderHooks hooks{.on_set_up = catch_interrupts, .time_counts_from = command.begun};
     RenderOptions options = command.render;
     options.hooks = &hooks;
     ProgressBar bar(common.quiet);
     bar.update("setting up tables and kernels");
     const auto progress = [&](const RenderProgress& state) {
         const double by_samples = static_cast<double>(state.samples) / command.render.samples;
-        const double by_time = state.seconds / command.render.time_seconds;
+        const std::chrono::duration<double> so_far =
+            std::chrono::steady_clock::now() - command.begun;
+        const double by_time = so_far.count() / command.render.time_seconds;
         bar.update(std::min(1.0, std::max(by_samples, by_time)),
                    std::isfinite(state.relmse)
                        ? fmt::format("{} spp, relMSE {:.2g}", state.samples, state.relmse)
@@ -189,6 +193,7 @@ void write_results(RenderCommand& command, const RenderResult& result) {
 }
 
 int run_render(RenderCommand command, const CommandContext& context) {
+    command.begun = std::chrono::steady_clock::now();
     CommonOptions common = context.common;
     const std::unique_ptr<Team> team = join_team(common);
     apply_texts(command, common);
@@ -239,7 +244,9 @@ void add_stopping_options(Command app, RenderCommand& command) {
     app.option("--spp", command.render.samples, "samples a pixel (64 unless --time or --error)")
         .in_range(1u, 1u << 30)
         .when_given([&command] { command.samples_given = true; });
-    app.option("--time", command.render.time_seconds, "stop after so many seconds").positive();
+    app.option("--time", command.render.time_seconds,
+               "stop after so many seconds, set-up included; one pass there is in any case")
+        .positive();
     app.option("--error", command.render.relmse,
                "stop at this estimated relMSE: mean of (error / value)^2 over pixels and bands")
         .positive();

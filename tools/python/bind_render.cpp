@@ -1,5 +1,6 @@
 #include "host/render/film/render_statistics.h"
 #include "host/render/plan/wavelength_text.h"
+#include "host/render/wavefront/render_hooks.h"
 #include "host/scene/toml/scene_table.h"
 #include "reradiant/device.h"
 #include "reradiant/render.h"
@@ -46,8 +47,10 @@ struct Rendered {
     nlohmann::ordered_json statistics;
 };
 
-Rendered render_source(const Source& source, const RenderOptions& options,
-                       const std::string& device_name, const std::string& model, StopFlag stop) {
+Rendered render_source(const Source& source, RenderOptions options, const std::string& device_name,
+                       const std::string& model, StopFlag stop) {
+    const RenderHooks hooks{.time_counts_from = std::chrono::steady_clock::now()};
+    options.hooks = &hooks;
     const Scene scene =
         source.table ? scene_from_table(*source.table, source.file) : load_scene(source.file);
     prepare_opencl(options.threads);

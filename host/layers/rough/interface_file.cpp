@@ -1,6 +1,7 @@
 #include "host/layers/rough/interface_file.h"
 
 #include "host/base/atomic_file.h"
+#include "host/base/checksum.h"
 #include "host/base/logging.h"
 #include "host/base/regular_file.h"
 #include "reradiant/error.h"
@@ -22,15 +23,6 @@ std::uint64_t bits_of(double value) {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &value, sizeof bits);
     return bits;
-}
-
-/// FNV-1a, 64 bit.
-std::uint64_t checksum_of(const std::vector<double>& numbers) {
-    std::uint64_t hash = 1469598103934665603ULL;
-    const auto* bytes = reinterpret_cast<const unsigned char*>(numbers.data());
-    for (std::size_t i = 0; i < numbers.size() * sizeof(double); ++i)
-        hash = (hash ^ bytes[i]) * 1099511628211ULL;
-    return hash;
 }
 
 /// The kinds by their magic words and by the beginnings of their files' names.

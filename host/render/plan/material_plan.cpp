@@ -3,7 +3,7 @@
 #include "host/layers/models/weidlich_wilkie_bsdf.h"
 #include "host/layers/stack/stack_variants.h"
 #include "host/layers/walk/walk_surface.h"
-#include "host/render/tables/dyed_operator.h"
+#include "host/render/dyes/dyed_operator.h"
 #include "host/render/tables/stack_optics.h"
 #include "host/render/tables/substrate_operator.h"
 #include "host/scene/model/closed_model.h"

@@ -2,6 +2,7 @@
 
 #include "host/base/memory_limit.h"
 #include "host/device/opencl_device.h"
+#include "host/render/plan/material_plans.h"
 #include "host/render/tables/hero_tables.h"
 #include "kernels/core/features.h"
 #include "reradiant/error.h"
@@ -89,9 +90,7 @@ public:
         plan_.film.independent_samples = plan_.sequence_blocks == 0;
         plan_.film.begins_odd = options_.first_sample % 2 == 1;
         plan_.lights = plan_lights(scene_, plan_.wavelengths, options_.light_groups);
-        for (std::size_t i = 0; i < scene_.materials.size(); ++i)
-            plan_.materials[i] =
-                plan_material(scene_.materials[i], plan_.materials[i].choice, plan_.wavelengths);
+        plan_materials(scene_, plan_.wavelengths, plan_.materials);
         plan_.features = features(plan_.lights.features);
         find_passed_sheets();
         count_paths();

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "host/render/dyes/dyed_operator.h"
 #include "host/render/plan/render_features.h"
-#include "host/render/tables/dyed_operator.h"
 #include "host/render/tables/lane_tables.h"
 #include "host/render/tables/stack_optics.h"
 #include "host/render/tables/substrate_operator.h"

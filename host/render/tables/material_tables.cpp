@@ -2,9 +2,9 @@
 
 #include "host/layers/models/weidlich_wilkie_bsdf.h"
 #include "host/layers/rough/facet_reflectance.h"
+#include "host/render/dyes/dyed_operator.h"
 #include "host/render/plan/material_plan.h"
 #include "host/render/tables/choice_tables.h"
-#include "host/render/tables/dyed_operator.h"
 #include "host/render/tables/substrate_tables.h"
 #include "host/scene/model/closed_model.h"
 

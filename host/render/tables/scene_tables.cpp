@@ -4,6 +4,7 @@
 #include "host/render/tables/walk_tables.h"
 
 #include <algorithm>
+#include <deque>
 #include <map>
 
 namespace reradiant {
@@ -22,6 +23,7 @@ void drop_repeats(std::vector<std::string>& notes) {
 /// Appends all materials in their order; the other sides of sheets follow after them.
 void append_materials(const Scene& scene, const RenderPlan& plan, SceneTables& tables) {
     std::map<std::size_t, MaterialOptics> sheets;
+    std::deque<MaterialOptics> recent;
     std::vector<std::size_t> walked_sheets;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
@@ -32,7 +34,7 @@ void append_materials(const Scene& scene, const RenderPlan& plan, SceneTables& t
                 walked_sheets.push_back(i);
             continue;
         }
-        MaterialOptics optics(material, planned.choice.model, plan.wavelengths);
+        MaterialOptics optics(material, planned.choice.model, plan.wavelengths, recent);
         append_material(material, planned, plan.wavelengths, plan.features, optics, tables);
         if (optics.is_sheet())
             sheets.emplace(i, std::move(optics));

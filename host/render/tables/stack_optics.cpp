@@ -45,6 +45,17 @@ int adding_lobe_count(const StackElements& stack) {
     return (has_facet_lobe(stack) ? 1 : 0) + static_cast<int>(returned_lobes(stack).size());
 }
 
+/// A material's stacks, [phase][lane], or the one at the reference wavelength.
+std::shared_ptr<const std::vector<StackElements>> stacks_of(const Material& material, bool spectral,
+                                                            const WavelengthPlan& plan) {
+    const int lanes = static_cast<int>(plan.lanes.size());
+    auto stacks = std::make_shared<std::vector<StackElements>>();
+    for (int i = 0; i < (spectral ? plan.phases * lanes : 1); ++i)
+        stacks->push_back(material_at(material, spectral ? plan.wavelength_nm(i % lanes, i / lanes)
+                                                         : reference_nm));
+    return stacks;
+}
+
 } // namespace
 
 bool has_facet_lobe(const StackElements& stack) {
@@ -80,22 +91,42 @@ int deeper_lobe_count(const Material& material, Model model) {
 }
 
 MaterialOptics::MaterialOptics(const Material& material, Model model, const WavelengthPlan& plan)
-    : spectral_(depends_on_wavelength(material)), lanes_(static_cast<int>(plan.lanes.size())) {
-    const int count = spectral_ ? plan.phases * lanes_ : 1;
-    (material.stack.is_sheet() ? sheets_.resize(static_cast<std::size_t>(count))
-                               : optics_.resize(static_cast<std::size_t>(count)));
-    std::vector<StackElements> stacks;
-    for (int i = 0; i < count; ++i)
-        stacks.push_back(material_at(
-            material, spectral_ ? plan.wavelength_nm(i % lanes_, i / lanes_) : reference_nm));
-    const auto lobe = is_sheet() ? through_lobe(stacks) : nullptr;
-    tbb::parallel_for(0, count, [&](int i) {
-        const StackElements& stack = stacks[static_cast<std::size_t>(i)];
-        const auto k = static_cast<std::size_t>(i);
-        if (is_sheet())
-            sheets_[k] = std::make_shared<SheetTransmission>(stack, lobe);
+    : spectral_(depends_on_wavelength(material)), lanes_(static_cast<int>(plan.lanes.size())),
+      model_(model), stacks_(stacks_of(material, spectral_, plan)) {
+    make(material.stack.is_sheet());
+}
+
+MaterialOptics::MaterialOptics(const Material& material, Model model, const WavelengthPlan& plan,
+                               std::deque<MaterialOptics>& recent)
+    : spectral_(depends_on_wavelength(material)), lanes_(static_cast<int>(plan.lanes.size())),
+      model_(model), stacks_(stacks_of(material, spectral_, plan)) {
+    const bool is_sheet = material.stack.is_sheet();
+    const auto known = std::ranges::find_if(recent, [&](const MaterialOptics& other) {
+        return other.model_ == model && other.spectral_ == spectral_ &&
+               other.is_sheet() == is_sheet && *other.stacks_ == *stacks_;
+    });
+    if (known == recent.end()) {
+        make(is_sheet);
+    } else {
+        *this = *known;
+        recent.erase(known);
+    }
+    recent.push_front(*this);
+    constexpr std::size_t most_kept = 8; // of some there are 10 MB
+    if (recent.size() > most_kept)
+        recent.pop_back();
+}
+
+void MaterialOptics::make(bool is_sheet) {
+    const std::size_t count = stacks_->size();
+    is_sheet ? sheets_.resize(count) : optics_.resize(count);
+    const auto lobe = is_sheet ? through_lobe(*stacks_) : nullptr;
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        const StackElements& stack = (*stacks_)[i];
+        if (is_sheet)
+            sheets_[i] = std::make_shared<SheetTransmission>(stack, lobe);
         else
-            optics_[k] = closed_model(model)(stack);
+            optics_[i] = closed_model(model_)(stack);
     });
 }
 

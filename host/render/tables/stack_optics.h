@@ -5,6 +5,7 @@
 #include "host/render/tables/lane_tables.h"
 #include "reradiant/scene.h"
 
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,10 @@ inline constexpr double reference_nm = 550.0;
 class MaterialOptics {
 public:
     MaterialOptics(const Material& material, Model model, const WavelengthPlan& plan);
+    /// Takes those of `recent`, newest first, where one is of the same stacks: variants of a
+    /// material whose textures colour the substrate are. This one becomes the newest of them.
+    MaterialOptics(const Material& material, Model model, const WavelengthPlan& plan,
+                   std::deque<MaterialOptics>& recent);
     /// The same sheet from the other side.
     MaterialOptics seen_from(Side side) const;
 
@@ -33,6 +38,7 @@ public:
     const SheetTransmission& any_sheet() const { return *sheets_.front(); }
 
 private:
+    void make(bool is_sheet);
     std::size_t index(int phase, int lane) const {
         return spectral_ ? static_cast<std::size_t>(phase * lanes_ + lane) : 0;
     }
@@ -42,8 +48,10 @@ private:
 
     bool spectral_;
     int lanes_;
+    Model model_;
     Side side_ = Side::Above;
-    std::vector<std::shared_ptr<const StackBsdf>> optics_; ///< empty for a sheet
+    std::shared_ptr<const std::vector<StackElements>> stacks_; ///< [phase][lane], or one
+    std::vector<std::shared_ptr<const StackBsdf>> optics_;     ///< empty for a sheet
     std::vector<std::shared_ptr<const SheetTransmission>> sheets_;
 };
 

@@ -110,19 +110,22 @@ Eigen::MatrixXd cells_on_lanes(const Eigen::MatrixXd& cells, const WavelengthPla
     return matrix;
 }
 
-Eigen::MatrixXd dyes_on_lanes(const Layer& layer, const WavelengthPlan& plan, int phase) {
+std::vector<Eigen::MatrixXd> dyes_on_lanes(const Layer& layer, const WavelengthPlan& plan) {
+    std::vector<Eigen::MatrixXd> by_phase(static_cast<std::size_t>(plan.phases));
     if (!layer.is_dyed())
-        return {};
+        return by_phase;
     const auto lanes = static_cast<Eigen::Index>(plan.lanes.size());
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(lanes, lanes);
+    for (Eigen::MatrixXd& sum : by_phase)
+        sum.setZero(lanes, lanes);
     for (const SlabDye& dye : layer.dyes) {
-        Eigen::MatrixXd sent = cells_on_lanes(dye_shares(dye, plan.comb), plan);
-        for (int lane = 0; lane < static_cast<int>(lanes); ++lane)
-            sent.col(lane) *= dye.concentration * layer.thickness *
-                              dye.absorption(plan.wavelength_nm(lane, phase));
-        sum += sent;
+        const Eigen::MatrixXd shares = cells_on_lanes(dye_shares(dye, plan.comb), plan);
+        for (int phase = 0; phase < plan.phases; ++phase)
+            for (int lane = 0; lane < static_cast<int>(lanes); ++lane)
+                by_phase[static_cast<std::size_t>(phase)].col(lane) +=
+                    shares.col(lane) * (dye.concentration * layer.thickness *
+                                        dye.absorption(plan.wavelength_nm(lane, phase)));
     }
-    return sum;
+    return by_phase;
 }
 
 Eigen::MatrixXd substrate_on_lanes(const Substrate& substrate, const SubstrateOnCells& on_cells,

@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include <vector>
+
 namespace reradiant {
 
 /// A substrate's re-radiation on a plan's cells, ready to be put under a stack.
@@ -21,9 +23,9 @@ SubstrateOnCells substrate_on_cells(const Substrate& substrate, const Wavelength
 /// line only excites: it has no width to emit into, and what it excites within its own cell stays
 /// with it.
 Eigen::MatrixXd cells_on_lanes(const Eigen::MatrixXd& cells, const WavelengthPlan& plan);
-/// Returns slab_emission of a layer on the lanes at a phase: (lanes, lanes), rows = emission.
+/// Returns slab_emission of a layer on the lanes, by phase: (lanes, lanes), rows = emission.
 /// Without entries for a slab without dyes.
-Eigen::MatrixXd dyes_on_lanes(const Layer& layer, const WavelengthPlan& plan, int phase);
+std::vector<Eigen::MatrixXd> dyes_on_lanes(const Layer& layer, const WavelengthPlan& plan);
 /// Returns the substrate's own matrix on the lanes at a phase, its reflectance on the diagonal.
 Eigen::MatrixXd substrate_on_lanes(const Substrate& substrate, const SubstrateOnCells& on_cells,
                                    const WavelengthPlan& plan, int phase);

@@ -137,8 +137,7 @@ private:
     void append_dyes(const Layer& layer, const SlabDepths& depths, WalkPartRecord& part) {
         std::vector<double> emitted;
         part.emission = lanes_.here();
-        for (int phase = 0; phase < lanes_.phases(); ++phase) {
-            const Eigen::MatrixXd sent = dyes_on_lanes(layer, lanes_.plan(), phase);
+        for (const Eigen::MatrixXd& sent : dyes_on_lanes(layer, lanes_.plan())) {
             append_columns(sent);
             for (const double sum : sent.rowwise().sum().eval())
                 emitted.push_back(sum);

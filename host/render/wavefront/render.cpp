@@ -34,18 +34,33 @@ std::uint32_t wanted_pass(const RenderProgress& state, const RenderOptions& opti
                         : usual;
 }
 
-/// A wanted pass, but none longer than the time between two checkpoints.
-std::uint32_t next_pass(const RenderProgress& state, const RenderOptions& options) {
-    const std::uint32_t done = state.samples;
-    std::uint32_t size = wanted_pass(state, options);
-    const double affordable = done * options.checkpoint_seconds / std::max(state.seconds, 1e-9);
-    if (!options.checkpoint.empty() && done > 0 && affordable < size)
-        size = std::max(1u, static_cast<std::uint32_t>(affordable));
-    return std::min(size, options.samples - done);
+/// A pass of so many samples, or of those that so many seconds suffice for at the rate so far.
+std::uint32_t pass_within(double seconds, std::uint32_t size, const RenderProgress& state) {
+    const double affordable = state.samples * seconds / std::max(state.seconds, 1e-9);
+    return state.samples > 0 && affordable < size
+               ? std::max(1u, static_cast<std::uint32_t>(std::max(affordable, 0.0)))
+               : size;
 }
 
-/// Returns where the samples of the next pass go, which is as large as a wanted one. This does not
-/// depend on how long earlier passes took, so that a resumed render takes the same samples.
+/// A wanted pass, but none longer than the time that is left.
+std::uint32_t timely_pass(const RenderRun& rendering, const RenderOptions& options) {
+    const RenderProgress& state = rendering.state();
+    return pass_within(options.time_seconds - rendering.counted_seconds(),
+                       wanted_pass(state, options), state);
+}
+
+/// A timely pass, but none longer than the time between two checkpoints.
+std::uint32_t next_pass(const RenderRun& rendering, const RenderOptions& options) {
+    const RenderProgress& state = rendering.state();
+    std::uint32_t size = timely_pass(rendering, options);
+    if (!options.checkpoint.empty())
+        size = pass_within(options.checkpoint_seconds, size, state);
+    return std::min(size, options.samples - state.samples);
+}
+
+/// Returns where the samples of the next pass go, which is as large as a timely one. Without a
+/// limit of time it does not depend on how long earlier passes took, so that a resumed render takes
+/// the same samples.
 std::vector<AdaptiveGroup> adaptive_pass(RenderRun& rendering, const Scene& scene,
                                          const RenderOptions& options) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(scene.film.width) *
@@ -54,9 +69,9 @@ std::vector<AdaptiveGroup> adaptive_pass(RenderRun& rendering, const Scene& scen
     std::vector<AdaptiveGroup> groups;
     rendering.wavefront().film().read([&](FilmSums film) {
         const std::uint64_t left = pixels * options.samples - samples_of(film);
-        const std::uint64_t usual = pixels * wanted_pass(rendering.state(), options);
+        const std::uint64_t timely = pixels * timely_pass(rendering, options);
         groups = adaptive_groups(film, errors, scene.film.width, scene.film.height,
-                                 options.first_sample, std::min(usual, left), left);
+                                 options.first_sample, std::min(timely, left), left);
     });
     return groups;
 }
@@ -67,7 +82,7 @@ std::uint32_t render_pass(RenderRun& rendering, const Scene& scene, const Render
     const std::uint32_t even =
         options.adaptive ? samples_before_adapting(rendering.plan().wavelengths) : options.samples;
     if (done < even) {
-        const std::uint32_t samples = std::min(next_pass(rendering.state(), options), even - done);
+        const std::uint32_t samples = std::min(next_pass(rendering, options), even - done);
         rendering.wavefront().render_pass(options.first_sample + done, samples);
         return done + samples;
     }

@@ -81,12 +81,20 @@ void RenderRun::resume() {
 }
 
 bool RenderRun::must_stop() const {
-    return state_.samples >= options_.samples || state_.seconds >= options_.time_seconds ||
+    const bool begun = state_.samples > 0; // one pass there is, however little time
+    return state_.samples >= options_.samples ||
+           (begun && counted_seconds() >= options_.time_seconds) ||
            (options_.relmse > 0.0 && state_.relmse <= options_.relmse);
 }
 
 double RenderRun::seconds() const {
     return seconds_before_ + seconds_since(rendering_) - observing_seconds_;
+}
+
+double RenderRun::counted_seconds() const {
+    return options_.hooks && options_.hooks->time_counts_from
+               ? seconds_before_ + seconds_since(*options_.hooks->time_counts_from)
+               : state_.seconds;
 }
 
 /// An estimate takes about as long as a sample of a simple scene: the many short passes at the

@@ -25,6 +25,9 @@ public:
     bool must_stop() const;
     /// Seconds of rendering until now; what observers took is left out.
     double seconds() const;
+    /// Seconds that count for RenderOptions::time_seconds, set-up with them where the hooks say so;
+    /// those of a resumed render count on.
+    double counted_seconds() const;
     Wavefront& wavefront() { return wavefront_; }
     const RenderPlan& plan() const { return plan_; }
     /// Returns what each pixel says of where the next samples of an adaptive render go. To be asked

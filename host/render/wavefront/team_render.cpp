@@ -86,7 +86,8 @@ RenderResult render_together(const Scene& scene, const Device& device, const Ren
     const bool is_watched = options.relmse > 0.0 || observe;
     while (team.from_leader(!rendering.must_stop() && !dispenser.interrupted()) != 0) {
         const double before = rendering.seconds();
-        dispenser.begin_round(round_seconds(options, before, is_watched), before);
+        dispenser.begin_round(round_seconds(options, before, is_watched),
+                              rendering.counted_seconds());
         render_round(rendering, options, team, dispenser, progress);
         for (DeviceFilm& film : rendering.wavefront().films())
             add_films(film, rendering.plan().film, team);

@@ -33,7 +33,8 @@ def render(scene: Any, *, spp: Optional[int] = None, seed: int = 0, time: Option
     spp : int
         Samples a pixel; 64 unless `time` or `error` is given.
     time, error : float
-        Stop after so many seconds, or at this estimated relMSE, whichever is met first.
+        Stop after so many seconds, set-up included, or at this estimated relMSE, whichever is met
+        first.
     model : "auto", "adding", "weidlich-wilkie" or "walk"
         Instead of every material's own.
     wavelengths : "comb", "comb:N", "hero" or "hero:N"

@@ -1,4 +1,4 @@
-#include "host/render/tables/masked_factors.h"
+#include "host/render/dyes/masked_factors.h"
 
 #include "host/spectral/matrix/linear_systems.h"
 #include "host/spectral/matrix/singular_values.h"

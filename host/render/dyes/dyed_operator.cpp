@@ -1,5 +1,7 @@
-#include "host/render/tables/dyed_operator.h"
+#include "host/render/dyes/dyed_operator.h"
 
+#include "host/render/dyes/dyed_file.h"
+#include "host/render/dyes/dyed_key.h"
 #include "host/render/tables/lane_tables.h"
 #include "host/render/tables/substrate_operator.h"
 #include "host/scene/model/closed_model.h"
@@ -12,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 namespace reradiant {
 
@@ -85,18 +89,17 @@ ThinSvd decompose(const Eigen::MatrixXd& reached, const Eigen::VectorXd& scales,
 /// then as many channels are made as that takes.
 class DyedOperators {
 public:
-    DyedOperators(const Material& material, const SubstrateOnCells& on_cells,
-                  const WavelengthPlan& plan)
-        : material_(material), on_cells_(on_cells), plan_(plan) {}
+    /// `by_phase` is all that they depend on.
+    explicit DyedOperators(const std::vector<DyedStack>& by_phase)
+        : phases_(by_phase), is_sheet_(by_phase.front().substrate.size() == 0) {}
 
     DyedOperator make() {
         DyedOperator result;
         std::vector<double> left_out(most_channels, 0.0);
-        for (int phase = 0; phase < plan_.phases; ++phase) {
-            stacks_.push_back(
-                stacks_.empty() ? std::make_unique<EmittingStack>(stack_at_phase(phase))
-                                : std::make_unique<EmittingStack>(
-                                      stack_at_phase(phase), stacks_.front()->cells_per_octave()));
+        for (const DyedStack& phase : phases_) {
+            stacks_.push_back(stacks_.empty() ? std::make_unique<EmittingStack>(phase)
+                                              : std::make_unique<EmittingStack>(
+                                                    phase, stacks_.front()->cells_per_octave()));
             result.cells = std::max(result.cells, stacks_.back()->cells());
             result.depth_error = std::max(result.depth_error, stacks_.back()->error());
             add_reached(left_out);
@@ -106,10 +109,9 @@ public:
                left_out[static_cast<std::size_t>(result.channels - 1)] > channel_tolerance)
             ++result.channels;
         result.channel_error = left_out[static_cast<std::size_t>(result.channels - 1)];
-        for (int phase = 0; phase < plan_.phases; ++phase) {
+        for (std::size_t phase = 0; phase < phases_.size(); ++phase) {
             result.phases.push_back(at_phase(phase, result.channels));
-            result.shifts_up =
-                result.shifts_up && stacks_[static_cast<std::size_t>(phase)]->shifts_up();
+            result.shifts_up = result.shifts_up && stacks_[phase]->shifts_up();
         }
         if (result.shifts_up)
             factorise(result);
@@ -131,30 +133,21 @@ private:
         }
         if (dyes.factor_error > factor_tolerance)
             dyes.terms = 0;
-    }
-
-    DyedStack stack_at_phase(int phase) const {
-        DyedStack stack;
-        for (int lane = 0; lane < static_cast<int>(plan_.lanes.size()); ++lane)
-            stack.by_band.push_back(material_at(material_, plan_.wavelength_nm(lane, phase)));
-        for (const Layer& layer : material_.stack.layers)
-            stack.slabs.push_back(dyes_on_lanes(layer, plan_, phase));
-        if (!material_.stack.is_sheet())
-            stack.substrate = substrate_on_lanes(material_.substrate, on_cells_, plan_, phase);
-        return stack;
+        for (std::size_t phase = 0; phase < dyes.phases.size() && dyes.terms > 0; ++phase)
+            if (phase != dyes.phases.size() / 2)
+                dyes.phases[phase].coupling.resize(0, 0);
     }
 
     void add_reached(std::vector<double>& left_out) {
         const EmittingStack& stack = *stacks_.back();
-        std::vector<Lane>& lanes = by_phase_.emplace_back(plan_.lanes.size());
+        std::vector<Lane>& lanes = by_phase_.emplace_back(static_cast<std::size_t>(stack.bands()));
         std::vector<std::vector<double>> shares(lanes.size(), left_out);
         tbb::parallel_for(std::size_t{0}, lanes.size(), [&](std::size_t lane) {
             const auto band = static_cast<Eigen::Index>(lane);
             const SourceTransport& fine = stack.fine().at(band);
             const Eigen::VectorXd scales = source_scales(stack.fine_cells(), fine.sources());
-            const bool is_sheet = material_.stack.is_sheet();
-            lanes[lane] = {decompose(reached_at_nodes(fine, is_sheet), scales, shares[lane]),
-                           scales, reached_at_nodes(stack.coarse().at(band), is_sheet)};
+            lanes[lane] = {decompose(reached_at_nodes(fine, is_sheet_), scales, shares[lane]),
+                           scales, reached_at_nodes(stack.coarse().at(band), is_sheet_)};
         });
         for (const std::vector<double>& own : shares)
             for (std::size_t k = 0; k < left_out.size(); ++k)
@@ -179,11 +172,11 @@ private:
         return channels;
     }
 
-    ChannelOperator at_phase(int phase, int count) const {
-        const EmittingStack& stack = *stacks_[static_cast<std::size_t>(phase)];
-        const auto lanes = static_cast<Eigen::Index>(plan_.lanes.size());
+    ChannelOperator at_phase(std::size_t phase, int count) const {
+        const EmittingStack& stack = *stacks_[phase];
+        const Eigen::Index lanes = stack.bands();
         std::vector<Channels> channels;
-        for (const Lane& lane : by_phase_[static_cast<std::size_t>(phase)])
+        for (const Lane& lane : by_phase_[phase])
             channels.push_back(channels_of(lane, count));
         ChannelOperator result;
         for (const Channels& own : channels)
@@ -209,12 +202,30 @@ private:
         return result;
     }
 
-    const Material& material_;
-    const SubstrateOnCells& on_cells_;
-    const WavelengthPlan& plan_;
+    const std::vector<DyedStack>& phases_;
+    bool is_sheet_;
     std::vector<std::unique_ptr<EmittingStack>> stacks_; ///< by phase
     std::vector<std::vector<Lane>> by_phase_;
 };
+
+/// What a material's dyes are computed from, by phase.
+std::vector<DyedStack> dyed_stacks(const Material& material, const SubstrateOnCells& on_cells,
+                                   const WavelengthPlan& plan) {
+    std::vector<DyedStack> by_phase(static_cast<std::size_t>(plan.phases));
+    for (const Layer& layer : material.stack.layers) {
+        const std::vector<Eigen::MatrixXd> dyes = dyes_on_lanes(layer, plan);
+        for (std::size_t phase = 0; phase < dyes.size(); ++phase)
+            by_phase[phase].slabs.push_back(dyes[phase]);
+    }
+    for (int phase = 0; phase < plan.phases; ++phase) {
+        DyedStack& stack = by_phase[static_cast<std::size_t>(phase)];
+        for (int lane = 0; lane < static_cast<int>(plan.lanes.size()); ++lane)
+            stack.by_band.push_back(material_at(material, plan.wavelength_nm(lane, phase)));
+        if (!material.stack.is_sheet())
+            stack.substrate = substrate_on_lanes(material.substrate, on_cells, plan, phase);
+    }
+    return by_phase;
+}
 
 } // namespace
 
@@ -224,7 +235,13 @@ Eigen::Index node_row(int node, Side side) {
 
 DyedOperator dyed_operator(const Material& material, const SubstrateOnCells& on_cells,
                            const WavelengthPlan& plan) {
-    return DyedOperators(material, on_cells, plan).make();
+    const std::vector<DyedStack> by_phase = dyed_stacks(material, on_cells, plan);
+    const std::string key = dyed_key(by_phase);
+    if (std::optional<DyedOperator> kept = read_dyed_file(key))
+        return std::move(*kept);
+    DyedOperator made = DyedOperators(by_phase).make();
+    keep_dyed_operator(key, made);
+    return made;
 }
 
 } // namespace reradiant

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "host/layers/sources/emitting_stack.h"
-#include "host/render/tables/masked_factors.h"
+#include "host/render/dyes/masked_factors.h"
 #include "host/render/tables/substrate_operator.h"
 #include "reradiant/scene.h"
 #include "reradiant/wavelength_plan.h"
@@ -24,7 +24,8 @@ struct ChannelOperator {
     /// By lane: what light from the nodes' directions brings to the channels, (TABLE_NODES,
     /// channels); of a sheet those below follow, (2 TABLE_NODES, channels).
     std::vector<Eigen::MatrixXd> reached;
-    /// 1/sr, (channels * lanes, channels * lanes), lanes run fastest; rows = emission.
+    /// 1/sr, (channels * lanes, channels * lanes), lanes run fastest; rows = emission. Where
+    /// factors stand for it, of the middle phase alone, by which components are chosen.
     Eigen::MatrixXd coupling;
     ChannelFactors factors; ///< of the coupling, without terms where it is applied as it is
 };
@@ -51,7 +52,8 @@ struct DyedOperator {
     }
 };
 
-/// Input Error at the material for what adding cannot do with dyes.
+/// Returns a material's dyes from the disk cache (host/render/dyes/dyed_file.h), or computed and
+/// then kept there. Thread-safe. Input Error at the material for what adding cannot do with dyes.
 DyedOperator dyed_operator(const Material& material, const SubstrateOnCells& on_cells,
                            const WavelengthPlan& plan);
 
