@@ -143,6 +143,8 @@ TEST_F(FigureCommand, WrongMarksAreSaidAtTheirPlace) {
     expect_refusal(good + "[[plot]]\nname = \"p\"\nagainst = \"day.x\"\n", "9:");
     expect_refusal(good + "[[swatches]]\nname = \"p\"\nlamp = \"Sun\"\n", "9:");
     expect_refusal(std::string(image) + "[[plot]]\nname = \"p\"\n", "4:");
+    put("f.toml", "[figure]\nwidth_mm = 2000\ndpi = 2400\n" + good);
+    expect_failure(2, "figure f.toml -o f.png", "lower dpi");
     put("f.toml", good);
     expect_failure(2, "figure f.toml -o f.jpg", "f.jpg");
     expect_failure(2, "figure f.toml -o f", "f");

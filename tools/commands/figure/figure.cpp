@@ -1,5 +1,6 @@
 #include "host/base/atomic_file.h"
 #include "host/base/output_ending.h"
+#include "host/figure/figure_layout.h"
 #include "host/figure/svg_drawing.h"
 #include "host/report/json_file.h"
 #include "tools/commands/figure/figure_panels.h"
@@ -8,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 
 namespace reradiant {
@@ -53,6 +55,16 @@ void write_figure(const std::filesystem::path& file, const std::string& svg, dou
         write_picture(file, picture_of_svg(svg, dpi));
 }
 
+/// Refuses pictures that no drawing has room for.
+void check_pixels(const FigureCommand& command, const Figure& figure, double dpi) {
+    const double longest = std::max(figure.width, layout_of(figure).height) * dpi / 72.0;
+    if (lower_case_ending(command.output) == ".png" && longest > largest_drawing_side)
+        throw_input_error(
+            {command.input.string()},
+            fmt::format("the figure would have {:.0f} pixels a side", longest),
+            fmt::format("at most {} are drawn: lower dpi or width_mm", largest_drawing_side));
+}
+
 std::size_t panel_count(const Figure& figure) {
     std::size_t count = 0;
     for (const auto& row : figure.rows)
@@ -73,6 +85,7 @@ int run_figure(const FigureCommand& command, const CommandContext& context) {
                   read);
     const std::vector<ReadImage> images = read_images(request);
     const Figure figure = figure_of(request, images);
+    check_pixels(command, figure, request.dpi);
     write_figure(command.output, figure_svg(figure), request.dpi);
     write_json(context.common.json, result_json(command, request, images));
     if (!context.common.quiet)
