@@ -72,6 +72,7 @@ class Simulator:
         (folder / "vendors" / "simulator.icd").write_text(driver + "\n")
         (folder / "dense.csv").write_text(DENSE)
         (folder / "image.png").write_bytes(png(4, 4))
+        (folder / "lamp.obj").write_text("v -1 2.5 1\nv 0 2.5 1\nv 0 2.5 2\nv -1 2.5 2\nf 1 2 3\nf 1 3 4\n")
         # Optimised, some bit operations become ones that the simulator does not know.
         self.environment = os.environ | {
             "OCL_ICD_VENDORS": f"{folder / 'vendors'}/", "LD_PRELOAD": shim, "OCLGRIND_CHECK_API": "1",

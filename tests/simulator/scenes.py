@@ -39,6 +39,29 @@ type = "directional"
 direction = [0, -1, -1]
 irradiance = { blackbody_kelvin = 3000, scale = 1 }
 """
+SHAPED = """
+[[light]]
+type = "disk"
+center = [0, 2.5, 2]
+target = [0, 0, 0]
+radius = 0.4
+radiance = 5
+[[light]]
+type = "mesh"
+file = "lamp.obj"
+radiance = 5
+[[light]]
+type = "spot"
+position = [-1, 2, 2]
+target = [0, 0, 0]
+cone_deg = 40
+intensity = 5
+"""
+CLEAR_DAY = """
+[[light]]
+type = "sky"
+sun_elevation_deg = 40
+"""
 SKY = """
 [[light]]
 type = "environment"
@@ -142,6 +165,23 @@ substrate = { type = "lambert", reflectance = { texture = "i" } }
 name = "b"
 substrate = { type = "conductor", metal = "gold", alpha = 0.1 }
 """
+NESTED = """
+[[texture]]
+name = "c"
+type = "checker"
+size = 0.2
+[[material]]
+name = "m"
+mix = { with = "b", weight = { texture = "c" } }
+substrate = { type = "lambert", reflectance = 0.5 }
+[[material]]
+name = "b"
+mix = { with = "c", weight = 0.5 }
+substrate = { type = "lambert", reflectance = 0.2 }
+[[material]]
+name = "c"
+substrate = { type = "conductor", metal = "gold", alpha = 0.1 }
+"""
 LENS = "lens_radius = 0.1\nfocus_distance = 2.5"
 
 # Name, text, further options. `quick` ones are run in every suite.
@@ -165,6 +205,10 @@ SCENES = {
     "varnished preset": (HEAD % "" + LAMP + BALL + preset("red-lacquer"), "--variance bands"),
     "wavelengths of their own": (HEAD % "" + LAMP + BULB + BALL + COATED, "--bands 383:703:8"),
     "film between": (HEAD % "" + LAMP + BALL + FILMED, ""),
+    "shaped lamps": (HEAD % "" + SHAPED + BALL + COATED, ""),
+    "clear day by walk": (HEAD % "" + CLEAR_DAY + BALL + COATED_METAL, ""),
+    "nested mixtures": (HEAD % "" + LAMP + BALL + NESTED, ""),
+    "light groups": (HEAD % "" + LAMP + BULB + BALL + COATED, "--light-groups"),
     "hero": (HEAD % "" + LAMP + BALL + COATED, "--wavelengths hero"),
     "all features": (HEAD % "" + LAMP + BALL + COATED, "--all-features"),
     "double": (HEAD % "" + LAMP + BALL + COATED, "--double"),
